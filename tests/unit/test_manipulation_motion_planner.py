@@ -10,7 +10,7 @@ from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import Planner
-from services.manipulation.planning.plan_place import plan_place
+from services.manipulation.planning.plan_place import DEEPEST, plan_place
 from services.sim.model import own
 
 
@@ -63,6 +63,23 @@ def test_in_straight_motions_the_arm_keeps_off_its_base_by_as_much_as_it_lags() 
     arm.set_obstacles([Obstacle((hand[0], hand[1], hand[2]), (0.1, 0.1, 0.1), 0.0)])
     assert arm.collides(arm.home) and not arm.meets_itself([arm.home]), "a box is not the robot"
     assert arm.meets_itself([arm.home, near])
+
+
+@pytest.mark.parametrize(("high", "grounded"), [(0.03, True), (0.12, False)])
+def test_what_hangs_higher_than_it_was_measured_is_followed_down_to_where_the_hand_would_meet_the_surface(
+    high: float, grounded: bool
+) -> None:
+    planner = Planner(own().mjcf, 0)
+    size, offset = (0.06, 0.06, 0.15), np.array([0.0, 0.0, high])
+    held = GraspedObject("box", "box", approach_rotation(0.0, np.pi / 6), offset, size, 0.06, 0.0)
+    tray = Obstacle((0.7, 0.0, 0.39), (0.36, 0.5, 0.14), 0.0)
+    plan = plan_place(planner, held, [(0.576, 0.0)], 0.46, 0.004, [tray], planner.arm.home.copy())
+    assert plan.grounded == grounded
+    way = [planner.arm.pose(q).position for q in (plan.lower[-1], *plan.deeper)]
+    assert np.allclose([p[:2] for p in way], way[0][:2], atol=0.002)
+    assert way[-1][2] == pytest.approx(way[0][2] - DEEPEST, abs=0.002) or grounded
+    planner.arm.set_obstacles([tray])
+    assert not any(planner.arm.collides(q) for q in plan.deeper)
 
 
 @pytest.mark.parametrize("lay", [False, True])

@@ -26,10 +26,13 @@ from services.manipulation.arm.touch import (
 )
 from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.grasp_executor import close
+from services.manipulation.execution.place_executor import lower
 from services.manipulation.execution.robot import DT, Failure, Steps, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
-from services.manipulation.execution.setting_down import SLOWLY, set_down
+from services.manipulation.execution.setting_down import SLOWLY, STANDING, set_down
 from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.plan_place import PlacePlan
 from services.manipulation.planning.straight_grab import RESERVE, with_reserve
 from services.sim.model import own
 from tests.unit.test_manipulation_service import CONFIG, Arm
@@ -140,6 +143,39 @@ def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() ->
     sinking = -np.diff(heights)
     low = np.array(heights[:-1]) < heights[-1] + SLOWLY / 2
     assert sinking[low].max() < 0.5 * sinking[~low].max()
+
+
+@pytest.mark.parametrize(("surface", "grounded", "ends"), [(0.02, False, True), (0.2, True, True), (0.2, False, False)])
+def test_the_hand_opens_where_it_is_felt_to_stand_or_is_on_the_surface_itself_and_nowhere_else(
+    surface: float, grounded: bool, ends: bool
+) -> None:
+    """`surface`: how far [m] below the end of the way down what is held meets it."""
+    node = Arm()
+    node.step(1.0)
+    robot = node.service._robot
+    assert robot.planner is not None
+    planner, above = robot.planner, Pose(np.array([0.55, 0.0, 0.6]), approach_rotation(0.0, np.pi / 2))
+    top = planner.ik.solve(above, seeds(planner.arm, above, planner.arm.home))
+    assert top is not None
+    end = above.moved(np.array([0.0, 0.0, -0.08]))
+    down = planner.straight(top, above, end)
+    assert down is not None
+    deeper = planner.straight(down[-1], end, end.moved(np.array([0.0, 0.0, -0.05])))
+    assert deeper is not None
+    plan = PlacePlan([top], [top, *down], deeper, grounded, [], [], (0.55, 0.0))
+    held = GraspedObject("jar", "", above.rotation, np.array([0.0, 0.0, 0.05]), (0.06, 0.06, 0.1), 0.06, 0.0)
+    robot.joints, code = top, ""
+    try:
+        for _ in lower(robot, plan, held, falls=False):
+            robot.joints = np.array(node.sent(topics.ARM_COMMAND)[-1].position)
+            deep = end.position[2] - surface - planner.reaction.position(robot.joints)[2]
+            pressed = np.array([0.0, 0.0, -1.5 * STANDING]) * bool(deep > 0)
+            robot.torques = planner.reaction.torques(robot.joints, pressed)
+    except Failure as failure:
+        code = failure.code
+    fell_short = end.position[2] - planner.reaction.position(robot.joints)[2]
+    assert code == ("" if ends else "NOT_MET")
+    assert fell_short == pytest.approx(min(surface, 0.05), abs=0.003)
 
 
 def test_the_hand_keeps_room_to_open_when_it_is_wedged(arm: ArmModel) -> None:

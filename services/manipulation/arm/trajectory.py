@@ -95,6 +95,11 @@ def back_along(path: Sequence[Array], now: Array) -> list[Array]:
     return list(path[max(nearest - 1, 0) :: -1])
 
 
+def parallel(path: Sequence[Array], now: Array) -> list[Array]:
+    """A path moved so that it begins `now`, a little off its beginning."""
+    return [q + now - path[0] for q in path]
+
+
 def divided(path: Sequence[Array], first: Callable[[Array], bool]) -> tuple[list[Array], list[Array]]:
     """A path in two: as long as `first` holds of its configurations, and the rest, which begins where the one ends."""
     head = [path[0]]

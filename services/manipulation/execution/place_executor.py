@@ -11,8 +11,9 @@ from common.geometry import compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import TOUCHED
+from services.manipulation.arm.trajectory import parallel
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
-from services.manipulation.execution.setting_down import set_down
+from services.manipulation.execution.setting_down import probe, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.planning.edge_spots import Placement, edge_spots
@@ -136,7 +137,8 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
     if robot.grip.empty:
         robot.grasped = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
-    yield from _lower(robot, plan, held)
+    receptacle = robot.io.household.receptacle(name)
+    yield from lower(robot, plan, held, falls=receptacle is not None and receptacle.depth > 0)
     yield from robot.wait(0.2)
     robot.phase = "release"
     hand = planner_of(robot).arm.hand
@@ -147,7 +149,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
     robot.grasped = None
     robot.phase = "retract"
     try:
-        yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
+        yield from robot.follow(parallel(plan.retreat, robot.joints), config.joint_speed * 0.5)
         yield from robot.move_gripper(0.0)
         yield from robot.follow(plan.home, config.joint_speed)
     except Failure as failure:
@@ -160,15 +162,16 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
     return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
 
 
-def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
-    """Down until it stands: at the end of the way, or a little before that where it is felt to.
+def lower(robot: Robot, plan: PlacePlan, held: GraspedObject, falls: bool) -> Steps[None]:
+    """Down until it stands: it is felt to, a little before the end of the way or beyond it, or the hand itself is on
+    the surface. What `falls` into a bin is let go at the end of the way.
 
     Raises:
-        Failure: BLOCKED, it met something that is not what it is put on.
+        Failure: BLOCKED, it met something that is not what it is put on; NOT_MET, nothing where its surface should be.
     """
-    feel = planner_of(robot).reaction
+    feel, rest = planner_of(robot).reaction, robot.torques.copy()
     try:
-        yield from set_down(robot, plan.lower, robot.guard(robot.torques.copy()), 0.4)
+        yield from set_down(robot, plan.lower, robot.guard(rest), 0.4)
     except Failure as failure:
         if failure.code != TOUCHED:
             raise
@@ -176,6 +179,14 @@ def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
         if above > STANDS + (ASKEW * max(held.size[:2]) if held.at_rim else 0.0):
             raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
         robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
+        return
+    if falls:
+        return
+    felt = yield from probe(robot, plan.deeper, rest)
+    below = 1000 * float(feel.position(plan.lower[-1])[2] - feel.position(robot.joints)[2])
+    if not (felt or plan.grounded):
+        raise Failure("NOT_MET", f"the {held.label} met nothing, {below:.0f} mm below where it should stand")
+    robot.io.log.info("set down", object=held.label, felt=felt, below_mm=round(below, 1))
 
 
 def _unknown(robot: Robot) -> GraspedObject:
