@@ -74,6 +74,8 @@ class SpeechService:
         self._queue.push(self._audio(), now, bool(self._player.saying), self._listening, key)
         while utterance := self._queue.take(now):
             self._act(utterance, now)
+        if self._queue.abandoned(now):
+            self._ask_again()
         if self._listening:
             self._listen(now)
         said = self._player.step(now)
@@ -188,13 +190,13 @@ class SpeechService:
         elif found == "again":
             self._queue.open_window(now)
             self._set("listening", f"understood {free!r}", _FAILURES[verdict])
-            self._ask_again()
+            self._queue.keep(utterance, now)
         if found in ("awake", "command"):
             self._asked_again = False
 
     def _ask_again(self) -> None:
         """Say that an utterance was not understood: once, so that no television is talked to for ever."""
-        if not self._asked_again and not self._queue.busy:
+        if not self._asked_again:
             self._asked_again = True
             self._player.say(NOT_UNDERSTOOD)
 

@@ -31,6 +31,7 @@ SENTENCES = (
     "bring me the red mug", "the weather is nice today", "stop", "cancel", "yes",
     "hey jarvis, bring me the vitamin box", "hey jarvis, this is my vitamin box",
     "hey jarvis, bring me the oat milk", "hey travis, bring me the red mug",
+    "put the apple next to", "the red mug",
 )  # fmt: skip
 
 
@@ -98,6 +99,21 @@ def test_a_command_may_follow_the_wake_word_after_a_pause_but_only_one(robot: Ro
     assert robot.states()[-1] == "idle"
     robot.hear(said["bring me the red mug"])
     assert len(robot.commands) == 1
+
+
+def test_a_command_may_pause_in_the_middle(robot: Robot, said: dict[str, Samples]) -> None:
+    robot.hear(said["hey jarvis"])
+    parts = [said["put the apple next to"], said["the red mug"], PAUSE]
+    robot.hear(np.concatenate(parts), after=4.0)
+    assert robot.commanded() == ["put the apple next to the red mug"]
+    assert "speaking" not in robot.states()
+
+
+def test_who_says_it_again_after_nonsense_is_understood(robot: Robot, said: dict[str, Samples]) -> None:
+    robot.hear(said["hey jarvis"])
+    robot.hear(said["the weather is nice today"], after=0.0)
+    robot.hear(said["bring me the red mug"], after=4.0)
+    assert len(robot.commands) == 1 and robot.commanded()[0].endswith("bring me the red mug")
 
 
 def test_speech_to_somebody_else_is_ignored(robot: Robot, said: dict[str, Samples]) -> None:

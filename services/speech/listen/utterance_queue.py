@@ -4,6 +4,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from common.bus.port import Io, Job
 from common.household import Household
 from common.sound import RATE, Samples
@@ -17,21 +19,30 @@ GAP = 0.1
 """Longest gap between two chunks of a stream [s]: one step of the service."""
 LOADING = 0.5
 """Modelled time of loading the networks in lockstep [s] (chosen: below the first words)."""
+PATIENCE = 1.5
+"""How long an utterance that was found to be no command may be gone on with [s] (chosen: with `end_silence` before it,
+twice the pause of somebody who looks for a word)."""
+NOTHING: Samples = np.zeros(0, np.int16)
 
 
 @dataclass(frozen=True)
 class PendingUtterance:
-    """An utterance in recognition; `key` is the listen goal at its end, `began` the time of its beginning [s]."""
+    """An utterance in recognition; `key` is the listen goal at its end, `began` the time of its beginning [s],
+    `samples` its sound (n,)."""
 
     job: Job[Recognition]
     scope: Scope
     context: UtteranceContext
     key: tuple[str, int]
     began: float
+    samples: Samples
 
 
 class UtteranceQueue:
-    """`push` sound, `take` what was recognised. The wake word opens a window for the utterance after it."""
+    """`push` sound, `take` what was recognised. The wake word opens a window for the utterance after it.
+
+    What begins soon after an utterance that was `keep`t unfinished is one with it: "bring me ... the red mug".
+    """
 
     def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], FrontEnd]) -> None:
         self._config, self._io, self._load = config, io, load
@@ -48,6 +59,7 @@ class UtteranceQueue:
         self._began = self._last_sound = 0.0
         self._window_end = self._window_closed = float("-inf")
         self._settled = False
+        self._unfinished, self._unfinished_until = NOTHING, float("-inf")
         self._pending: deque[PendingUtterance] = deque()
 
     @property
@@ -82,6 +94,19 @@ class UtteranceQueue:
         if self._vocabulary is not None:
             household, names = self._vocabulary
             self._io.submit(lambda: front_end.result().learn(household, names), seconds=0.0)
+
+    def keep(self, utterance: PendingUtterance, now: float) -> None:
+        """Wait for the rest of an utterance that is no command so far."""
+        self._unfinished, self._unfinished_until = utterance.samples, now + PATIENCE
+
+    def abandoned(self, now: float) -> bool:
+        """True once when nobody goes on with an utterance that was kept, and nobody speaks."""
+        if not len(self._unfinished) or now < self._unfinished_until:
+            return False
+        if self.busy and self._began <= self._unfinished_until:
+            return False
+        self._unfinished = NOTHING
+        return not self.busy
 
     def settle(self, utterance: PendingUtterance) -> None:
         """Drop what else was said in the same breath: what this utterance asked for is done."""
@@ -152,5 +177,21 @@ class UtteranceQueue:
             self._teach(self._front_end)
         front_end, samples, wake = self._front_end, segment.samples, segment.wake
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
-        job = self._io.submit(lambda: front_end.result().recognise(samples, asked, wake), seconds=seconds)
-        self._pending.append(PendingUtterance(job, asked, context, key, self._began))
+        before = self._before(segment, context)
+
+        def recognise() -> Recognition:
+            whole = np.concatenate([before, samples])
+            found = front_end.result().recognise(whole, asked, wake)
+            alone = len(before) and found.verdict != "accept"
+            return front_end.result().recognise(samples, asked, wake) if alone else found
+
+        job = self._io.submit(recognise, seconds=seconds)
+        self._pending.append(PendingUtterance(job, asked, context, key, self._began, samples))
+
+    def _before(self, segment: Segment, context: UtteranceContext) -> Samples:
+        """The sound of the utterance that a segment goes on with, no more of it than an utterance may be long."""
+        if not (segment.over and context.meant):
+            return NOTHING
+        before, self._unfinished = self._unfinished, NOTHING
+        room = round(self._config.max_utterance * RATE) - len(segment.samples)
+        return before[-room:] if self._began <= self._unfinished_until and room > 0 else NOTHING

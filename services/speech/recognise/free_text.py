@@ -22,6 +22,12 @@ one question of nine was right, above it two of five."""
 FAINT = 0.4
 """Certainty of the free transcription below which a sentence of the grammar that it does not confirm is asked about.
 Chosen on five voices in noise: below it two of five sentences that were accepted were wrong, above it none of 80."""
+_OPEN_WORDS = "the a an my your our their its and or to from into onto of with between beside behind under"
+OPEN = frozenset(_OPEN_WORDS.split())
+"""Words after which something must come, other than those that also end a sentence ("turn it on", "give me that")."""
+PLAIN = 0.6
+"""Certainty of a transcription from which its words count as heard (chosen: half-way between `FAINT` and what the brain
+takes without a question)."""
 WAKE_LIKENESS = 0.85
 """Least share of letters in common with the wake word (chosen: `they jarvins` has 0.91, `hey travis` 0.8)."""
 
@@ -44,7 +50,7 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
     the mug there" is no "put the mug there"), and is asked about, as is a sentence where hardly anything was heard. Of
     things that are not among the `names` only a certain transcription tells, and so of what may ask for something in
     wordings that nobody knows. What sounds like something that would be understood is asked about; one of many
-    sentences that fit as badly is not.
+    sentences that fit as badly is not, nor how a sentence that breaks off might go on.
     """
     found = replace(found, text=without_wake(found.text, config.wake))
     free = without_wake(normalise(found.free, ",").strip(" ,"), config.wake).strip(" ,")
@@ -58,6 +64,8 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         return replace(found, confidence=min(found.confidence, UNLISTED)) if found.certainty < FAINT else found
     if not free:
         return found  # nothing but the wake word
+    if free.split()[-1] in OPEN and found.certainty >= PLAIN:
+        return replace(found, verdict="reject")
     grade = understood(free, names)
     if grade == "listed":
         return replace(found, text=free, verdict="accept", confidence=found.certainty)
