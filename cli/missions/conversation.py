@@ -45,16 +45,16 @@ class Conversation:
         if why:
             raise CliError(f"{why}; wait with `tidybot status --wait WAITING`, or end it with `tidybot say cancel`")
 
-    def await_open(self, timeout: float = LISTEN) -> None:
+    def await_open(self) -> None:
         """Return when the robot takes a command.
 
         Raises:
             CliError: it does not in time.
         """
-        end = monotonic() + timeout
+        end = monotonic() + LISTEN
         while why := self.closed():
             if monotonic() > end:
-                raise CliError(f"after {timeout:.0f} s still: {why}")
+                raise CliError(f"after {LISTEN:.0f} s still: {why}")
             self._next(0.2)
 
     def closed(self) -> str:

@@ -60,6 +60,8 @@ def become(command: Sequence[str], environment: Mapping[str, str]) -> NoReturn:
     sys.orig_argv, sys.argv = list(command), list(command[2:])
     name_process(command)
     status = _run(command[2])
+    # Python has no public names for what it does at its end; multiprocessing ends its forks by the first as well.
+    # Without them threads would be cut short, and handlers of atexit not run, or supervisord's ones (`_clear` above).
     threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     sys.stdout.flush()

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from concurrent.futures import wait as futures_wait
 from contextlib import contextmanager
-from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
 
@@ -80,16 +79,14 @@ def endpoints(connect: str) -> list[str]:
     return [e.strip() for e in connect.split(",") if e.strip()]
 
 
-def client_config(
-    connect: str, namespace: str = "", directory: Path = CONFIGS, shown: "Identity | None" = None
-) -> zenoh.Config:
+def client_config(connect: str, namespace: str = "", shown: "Identity | None" = None) -> zenoh.Config:
     """A client of the comma-separated router endpoints; with a certificate `shown` it speaks TLS only.
 
     Raises:
         BusError: a bad endpoint or namespace.
     """
     try:
-        config = zenoh.Config.from_file(str(directory / "client.json5"))
+        config = zenoh.Config.from_file(str(CONFIGS / "client.json5"))
         config.insert_json5("connect/endpoints", _json(endpoints(connect)))
         if shown is not None:
             config.insert_json5("transport/link/protocols", _json(["tls"]))

@@ -36,9 +36,9 @@ class StopSignal:
         return self._event.wait(timeout)
 
 
-def die_with_parent(environ: "os._Environ[str]" = os.environ) -> None:
+def die_with_parent() -> None:
     """Ask Linux for SIGTERM when the supervisor dies, when it says it is our parent (TIDYBOT_SUPERVISED)."""
-    if environ.get("TIDYBOT_SUPERVISED") != "1":
+    if os.environ.get("TIDYBOT_SUPERVISED") != "1":
         return
     try:
         ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -9,6 +9,8 @@ from evaluation.report.statistics import share, wilson
 BUSY = {"PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING"}
 CARRIED = 0.3
 """Distance [m] in the hand from which an object counts as carried; chosen: more than a lift moves it."""
+WIDTH = 640
+"""Width of a chart [px]; chosen: readable, and no wider than the report's page."""
 STAGES = ("understood", "at the object", "lifted", "carried", "delivered")
 
 
@@ -32,10 +34,10 @@ def by_stage(results: Sequence[Result]) -> list[tuple[str, int, int]]:
     return [(stage, sum(row[stage] for row in rows), len(rows)) for stage in STAGES]
 
 
-def bars(rows: Sequence[tuple[str, int, int]], width: int = 640) -> dict[str, Any]:
+def bars(rows: Sequence[tuple[str, int, int]]) -> dict[str, Any]:
     """Where the chart of (name, successes, cases) has its bars [px], with 95 % intervals from `low` to `high`."""
     margin, line = 150, 34
-    span = width - 2 * margin
+    span = WIDTH - 2 * margin
     drawn = []
     for n, (name, good, count) in enumerate(rows):
         low, high = wilson(good, count)
@@ -47,13 +49,13 @@ def bars(rows: Sequence[tuple[str, int, int]], width: int = 640) -> dict[str, An
                 "share": share(good, count),
             }
         )  # fmt: skip
-    return {"width": width, "height": len(rows) * line + 8, "left": margin, "span": span, "bars": drawn}
+    return {"width": WIDTH, "height": len(rows) * line + 8, "left": margin, "span": span, "bars": drawn}
 
 
-def strip(values: Sequence[tuple[float, bool, str]], unit: str, top: float, width: int = 640) -> dict[str, Any]:
+def strip(values: Sequence[tuple[float, bool, str]], unit: str, top: float) -> dict[str, Any]:
     """Where the dots of (value, good, title) are [px] on an axis from 0 to `top`, stacked where they would overlap."""
     margin, dot, ticks = 30, 9, 5
-    span, heights = width - 2 * margin, dict[int, int]()
+    span, heights = WIDTH - 2 * margin, dict[int, int]()
     places = []
     for value, good, title in sorted(values, key=lambda v: v[0]):
         x = margin + span * min(max(value / top, 0.0), 1.0)
@@ -61,7 +63,7 @@ def strip(values: Sequence[tuple[float, bool, str]], unit: str, top: float, widt
         places.append((x, level, good, title))
     height = 26 + dot * (1 + max(heights.values(), default=0))
     return {
-        "width": width, "height": height, "left": margin, "right": width - margin, "label": unit or "share",
+        "width": WIDTH, "height": height, "left": margin, "right": WIDTH - margin, "label": unit or "share",
         "ticks": [
             {"x": round(margin + span * n / ticks), "label": f"{top * n / ticks:.3g} {unit}"} for n in range(ticks + 1)
         ],

@@ -6,16 +6,16 @@ Z = 1.959964
 """The standard normal quantile of a two-sided 95 % interval."""
 
 
-def wilson(good: int, count: int, z: float = Z) -> tuple[float, float]:
-    """The Wilson score interval of the true share, 95 % by default; (0, 1) without cases.
+def wilson(good: int, count: int) -> tuple[float, float]:
+    """The Wilson score interval of the true share, 95 %; (0, 1) without cases.
 
     Source: E. B. Wilson, "Probable inference, the law of succession, and statistical inference", JASA 22 (1927).
     """
     if not count:
         return 0.0, 1.0
-    share, square = good / count, z * z
+    share, square = good / count, Z * Z
     centre = (share + square / (2 * count)) / (1 + square / count)
-    reach = z * sqrt(share * (1 - share) / count + square / (4 * count * count)) / (1 + square / count)
+    reach = Z * sqrt(share * (1 - share) / count + square / (4 * count * count)) / (1 + square / count)
     return max(0.0, centre - reach), min(1.0, centre + reach)
 
 

@@ -77,9 +77,9 @@ def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
     return (Rule(service="planner", key="action_plan", kind="edit", fields={"steps": plan, "source": "fault"}),)
 
 
-def destination(spec: ObjectSpec, scene: Scene, path: Path | None = None) -> str:
+def destination(spec: ObjectSpec, scene: Scene) -> str:
     """Where an object belongs by the tidying rules: the first receptacle of the first rule; "" when none fits."""
-    for rule in _rules(path or words_path(config_dir())):
+    for rule in _rules(words_path(config_dir())):
         if spec.kind not in rule.get("kinds", [spec.kind]) or spec.colour not in rule.get("colours", [spec.colour]):
             continue
         for name in rule["to"]:

@@ -13,7 +13,6 @@ from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.journal.open import open_journal
 from services.brain.journal.queries import MissionQueries
-from services.brain.journal.records import Journal
 from services.brain.mission.asides import Asides
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
@@ -35,9 +34,9 @@ class BrainService:
     CONFIG = BrainConfig
     READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
-    def __init__(self, config: BrainConfig, io: Io, journal: Journal | None = None) -> None:
+    def __init__(self, config: BrainConfig, io: Io) -> None:
         self._io = io
-        self._journal = journal or open_journal(config, io)
+        self._journal = open_journal(config, io)
         self.context = Context(config, io, self._journal)
         self.tree = {"fetch": fetch_tree, "vla": vla_tree}[config.pipeline](self.context)
         self._seen = Seen()

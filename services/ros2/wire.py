@@ -104,14 +104,12 @@ class Outlet:
 class RosNode:
     """A node of a ROS graph, shown to the others by tokens; it ends with `close`."""
 
-    def __init__(
-        self, opened: AbstractContextManager[zenoh.Session], name: str, namespace: str, domain: int, enclave: str = ""
-    ) -> None:
+    def __init__(self, opened: AbstractContextManager[zenoh.Session], name: str, namespace: str, domain: int) -> None:
         self._stack = ExitStack()
         self._session = self._stack.enter_context(opened)
         self._ids = itertools.count()
         self._domain = domain
-        self._path = "/".join((mangled(enclave), mangled(namespace), name))
+        self._path = "/".join((mangled(""), mangled(namespace), name))  # no enclave
         self._node = next(self._ids)
         self._kept: list[Any] = [self._session.liveliness().declare_token(self._token(self._node, NODE))]
 

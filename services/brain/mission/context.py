@@ -56,12 +56,12 @@ class Context:
         """The state as shown on `brain/state`."""
         return self.display.shown.state
 
-    def show_state(self, state: m.BrainStateName, step: str = "", detail: str = "", cause: str = "") -> None:
+    def show_state(self, state: m.BrainStateName, step: str = "", detail: str = "") -> None:
         """Show a state; a change is published at once and noted in the journal."""
         number, resumable = plan_step(self.checkpoints.at), self.suspended is not None
         before = self.display.show(self.mission, self.now, state, step, detail, number, resumable)
         if before is not None and (before.state != state or before.step != step):
-            self.note(cause or step or state, detail, "state")
+            self.note(step or state, detail, "state")
             shown = self.display.shown
             self.io.log.info("state", mission=shown.mission_id, state=state, step=step, detail=detail, was=before.state)
 

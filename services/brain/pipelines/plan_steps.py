@@ -70,9 +70,9 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             return look_around(ctx)
         case "navigate":
             return navigate(ctx, step.target or step.object, name)
-        case "grasp" if step.hand_alone:
-            closing = MoveGripper("close_the_hand", ctx, closed=True)
-            return Sequence(PLAN_STEP, closing, Settle("settle", ctx), name=name)
+        case "grasp" | "release" if step.hand_alone:
+            hand = MoveGripper("close_the_hand", ctx, closed=True) if step.action == "grasp" else open_hand(ctx)
+            return Sequence(PLAN_STEP, hand, Settle("settle", ctx), name=name)
         case "grasp":
             return grasp(ctx, step.object)
         case "place":
@@ -81,8 +81,6 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             back, goal = partial(stand_before, ctx, step), f"place {step.target}"
             down = put_down(ctx, carried, back, goal, step.target, step.near)
             return Sequence(PLAN_STEP, there, down, name=name)
-        case "release" if step.hand_alone:
-            return Sequence(PLAN_STEP, open_hand(ctx), Settle("settle", ctx), name=name)
         case "release":
             return release(ctx, carried, at_home, name)
         case "say":
