@@ -5,6 +5,7 @@ import json
 import pkgutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import msgspec
@@ -35,6 +36,8 @@ def replacement(entry: str) -> tuple[str, Any]:
         kind = pkgutil.resolve_name(entry)
     except (ImportError, AttributeError, ValueError) as error:
         raise LookupError(f"{entry}: {error}; expected package.module:Class that can be imported") from None
+    if isinstance(kind, ModuleType):
+        raise LookupError(f"{entry} is a module; expected package.module:Class")
     missing = [n for n in ("NAME", "HZ", "CONFIG", "READS", "WRITES", "step") if not hasattr(kind, n)]
     if missing:
         raise LookupError(f"{entry} has no {', '.join(missing)}; see docs/EXTENDING.md for what a service has")
