@@ -32,7 +32,7 @@ from common.sound import RATE, Samples, read_wav
 from evaluation.person.voice import utter
 from evaluation.report.statistics import wilson
 from services.speech.config import SpeechConfig
-from services.speech.recognise.free_text import without_wake
+from services.speech.recognise.wake_text import without_wake
 from services.speech.transcribe import Reader
 
 ROWS = (

@@ -5,9 +5,10 @@ import pytest
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
-from services.speech.recognise.free_text import UNLISTED, freely, without_wake
+from services.speech.recognise.free_text import UNLISTED, cost, freely
 from services.speech.recognise.recogniser import Recognition, Verdict
 from services.speech.recognise.sounding import editex, resounded
+from services.speech.recognise.wake_text import without_wake
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -133,6 +134,25 @@ def test_the_sentence_or_the_free_transcription_counts(
 ) -> None:
     heard = freely(Recognition(*found), NAMES, CONFIG)
     assert (heard.text, heard.verdict, heard.confidence) == (text, verdict, confidence)
+
+
+@pytest.mark.parametrize(
+    ("certainty", "share", "confidence"), [(0.7, 0.0, 0.7), (0.7, 0.95, 0.95), (0.9, 0.4, 0.9), (0.59, 0.95, 0.59)]
+)
+def test_a_transcription_like_which_nothing_else_sounds_is_surer(
+    certainty: float, share: float, confidence: float
+) -> None:
+    said = "Is the mug on the shelf?"
+    found = freely(Recognition("", "reject", 0.0, said, certainty, share=share), NAMES, CONFIG)
+    assert (found.text, found.confidence) == ("is the mug on the shelf", confidence)
+    unlisted = freely(Recognition("", "reject", 0.0, "Bring me my wallet.", 0.9, share=1.0), NAMES, CONFIG)
+    assert unlisted.confidence == UNLISTED, "a word that is on no list may sound like any"
+
+
+def test_a_transcription_costs_the_more_the_less_is_understood_of_it() -> None:
+    said = ("Hey Jarvis, is the mug on the shelf?", "Hey Jarvis, bring me my wallet.", "Hey Jarvis, the stair is foot.")
+    costs = [cost(text, NAMES, CONFIG) for text in said]
+    assert costs[0] == 0.0 < costs[1] < costs[2]
 
 
 @pytest.mark.parametrize(

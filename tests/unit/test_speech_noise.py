@@ -9,7 +9,7 @@ from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
 from services.speech.recognise.recogniser import PreparedUtterance, confidence_of, verdict_of
-from services.speech.recognise.scoring import CANDIDATES, Choice, prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import CANDIDATES, Choice, likeliest, prior_cost, rescored, time_scaled
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -115,6 +115,21 @@ def test_a_command_shares_with_those_that_sound_alike_and_mean_something_else() 
     assert 0.5 < share(Said(alike.text, -7.0)) < share(Said(alike.text, -9.0)) < 1.0
     sure = Said("bring me the red glass", -5.0)
     assert rescored([FOUND[0], alike], sure, lambda text: 0.0, list).share == pytest.approx(0.5)
+
+
+def test_of_transcriptions_that_sound_alike_one_that_makes_sense_is_chosen() -> None:
+    mud, mug = Said("Where does a mud go?", -4.0), Said("where does a mug go", -4.5)
+    spelled = Said("Where does the mug go", -6.0)
+
+    def chosen(*found: Said, cost: float) -> tuple[Said, float]:
+        again = [s.log_probability for s in found]
+        return likeliest(list(found), again, lambda text: cost * ("mud" in text))
+
+    assert chosen(mud, mug, cost=0.0)[0] == mud
+    assert chosen(mud, mug, cost=1.0)[0] == mug
+    assert chosen(mug, cost=0.0) == (mug, 1.0) and chosen(mug, spelled, cost=0.0) == (mug, 1.0)
+    assert 0.5 < chosen(mud, mug, cost=1.0)[1] < chosen(mud, mug, spelled, cost=1.0)[1] < chosen(mud, mug, cost=9.0)[1]
+    assert likeliest([mud, mug], [-9.0, -4.0], lambda text: 0.0)[0] == mug, "it must hold for both scorings"
 
 
 def test_other_speech_is_no_command_because_its_transcription_does_not_hold() -> None:

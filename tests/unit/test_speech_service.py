@@ -15,7 +15,7 @@ from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
 from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.recogniser import patterns
-from services.speech.recognise.token_trie import TokenTrie
+from services.speech.recognise.token_trie import AnyTokens, TokenTrie
 from services.speech.service import SpeechService
 from services.speech.speak.voice import Voice
 from tests.node import Node
@@ -81,6 +81,12 @@ def test_tokens_that_continue_a_sentence_are_found_whatever_their_case_and_lengt
     numbers, states = vocabulary.allowed(after[5])
     assert sorted(numbers) == [6, 7]
     assert grammar.is_final(dict(zip(numbers.tolist(), states, strict=True))[6])
+
+
+def test_without_a_grammar_every_written_token_may_follow() -> None:
+    free = AnyTokens(["<unk>", "<s>", "</s>", " St", "op", "<0x0A>", "", " caf\u00e9", ".", " g"])
+    numbers, states = free.allowed(free.start)
+    assert numbers.tolist() == [3, 4, 8, 9] and all(free.is_final(state) for state in states)
 
 
 def test_an_utterance_ends_after_a_pause_and_not_in_a_short_one() -> None:

@@ -12,9 +12,10 @@ from common.sound import RATE
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
-from services.speech.recognise.free_text import freely, without_wake
+from services.speech.recognise.free_text import cost, freely
 from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
+from services.speech.recognise.wake_text import without_wake
 
 BEFORE, AFTER = 0.2, 0.6
 """Sound kept around the speech [s]. Chosen: room for soft beginnings and endings, which voice detection misses."""
@@ -59,7 +60,7 @@ class FrontEnd:
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
         self._detector, self._config = VoiceDetector(), config
         self._names = known_names(config, household, ())
-        self._recogniser = Recogniser(config, found)
+        self._recogniser = Recogniser(config, found, lambda text: cost(text, self._names, config))
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
         """What 16 kHz int16 samples (n,) say, without the wake word, for which its detector gave a score."""

@@ -4,7 +4,7 @@ Jeffries et al., "Moonshine: Speech Recognition for Live Transcription and Voice
 weights see `common/speech_weights.py`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -17,13 +17,15 @@ from services.speech.prepared import ENCODER, prepared
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
 from services.speech.recognise.inference import session
-from services.speech.recognise.token_trie import BOS, EOS, TokenTrie, read_tokens
+from services.speech.recognise.token_trie import BOS, EOS, AnyTokens, TokenTrie, letters, read_tokens
 
 Array = NDArray[np.float32]
 TOKENS_PER_SECOND = 6.5
 """Most tokens per second of sound: the limit that Moonshine's authors recommend against endless repetition."""
 BEAM_THRESHOLD = 10.0
 """Natural logarithm of how much less likely than the best a hypothesis may be to stay in the beam."""
+FREE_BEAM = 8
+"""Hypotheses of the search without a grammar (chosen: half of those under one, for the time they take)."""
 RATE = 16000
 """Samples per second of the network's input."""
 REPLACED = 4
@@ -81,6 +83,7 @@ class Moonshine:
         self._encoder, self._decoder = networks(threads)
         self._beam = beam
         self.tokens = read_tokens(speech_weights.folder() / "tokenizer.bin")
+        self._any = AnyTokens(self.tokens)
 
     def encode(self, variants: Array) -> EncodedUtterance:
         """Encode 16 kHz samples (variants, n) of one utterance."""
@@ -105,7 +108,15 @@ class Moonshine:
                 break
             numbers.append(best)
             scores, cache = self._decoder.step(utterance.attended, cache, [0], [best])
-        return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, (*numbers, EOS))
+        return Decoded(self._spelled(numbers), total, (*numbers, EOS))
+
+    def freely(self, utterance: EncodedUtterance) -> list[Decoded]:
+        """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first."""
+        found = self._search(utterance, self._any, lambda text: 0.0, FREE_BEAM)
+        return [Decoded(self._spelled(f.numbers[:-1]), f.log_probability, f.numbers) for f in found]
+
+    def _spelled(self, numbers: Iterable[int]) -> str:
+        return "".join(self.tokens[n] for n in numbers).strip()
 
     def best(self, utterance: EncodedUtterance, trie: TokenTrie, prior: Callable[[str], float]) -> list[Decoded]:
         """Different sentences of the grammar by beam search, the likeliest first; empty when none fits into the length.
@@ -113,16 +124,21 @@ class Moonshine:
         The `prior` cost of a whole sentence is taken from its log-probability. Of hypotheses that read the same only
         the best is kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
         """
-        grammar = trie.grammar
+        return self._search(utterance, trie, prior, self._beam)
+
+    def _search(
+        self, utterance: EncodedUtterance, trie: TokenTrie | AnyTokens, prior: Callable[[str], float], width: int
+    ) -> list[Decoded]:
+        """The sentences of a beam of that `width`."""
         scores, cache = self._first(utterance)
-        beam = [BeamHypothesis(0.0, (), grammar.start, "")]
+        beam = [BeamHypothesis(0.0, (), trie.start, "")]
         finished: dict[str, tuple[float, Decoded]] = {}
         for _ in range(utterance.limit):
             for row, hypothesis in enumerate(beam):
-                if hypothesis.text and grammar.is_final(hypothesis.state):
+                if hypothesis.text and trie.is_final(hypothesis.state):
                     _finish(hypothesis, float(scores[row, EOS]), prior, finished)
             leader = max((worth for worth, _ in finished.values()), default=-np.inf)
-            kept = self._continued(beam, scores, trie, leader)
+            kept = self._continued(beam, scores, trie, leader, width)
             if not kept:
                 break
             beam = [hypothesis for hypothesis, _ in kept]
@@ -135,7 +151,7 @@ class Moonshine:
         return self._decoder.step(utterance.attended, self._decoder.empty_cache(utterance.variants), [0], [BOS])
 
     def _continued(
-        self, beam: list[BeamHypothesis], scores: Array, trie: TokenTrie, leader: float
+        self, beam: list[BeamHypothesis], scores: Array, trie: TokenTrie | AnyTokens, leader: float, width: int
     ) -> list[tuple[BeamHypothesis, int]]:
         """The best hypotheses one token longer, each with the row of the one it goes on from.
 
@@ -145,13 +161,13 @@ class Moonshine:
         for row, hypothesis in enumerate(beam):
             allowed, after = trie.allowed(hypothesis.state)
             values = scores[row, allowed]
-            for k in np.argsort(values)[::-1][: 2 * self._beam]:
+            for k in _highest(values, 2 * width):
                 number, total = int(allowed[k]), hypothesis.total + float(values[k])
-                text = hypothesis.text + trie.letters(number)
+                text = hypothesis.text + letters(self.tokens[number])
                 if text not in options or total > options[text][0].total:
-                    longer = BeamHypothesis(total, (*hypothesis.numbers, number), after[int(k)], text)
+                    longer = BeamHypothesis(total, (*hypothesis.numbers, number), after[k], text)
                     options[text] = longer, row
-        kept = sorted(options.values(), key=lambda o: -o[0].total)[: self._beam]
+        kept = sorted(options.values(), key=lambda o: -o[0].total)[:width]
         return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
 
     def begun_with(self, numbers: tuple[int, ...], sentence: Decoded) -> list[Decoded]:
@@ -178,6 +194,13 @@ class Moonshine:
             alive = [alive[row] for row in before]
             last = [sentences[k].numbers[i] for k in alive]
         return totals
+
+
+def _highest(values: Array, count: int) -> list[int]:
+    """Indices of the highest values, the highest first."""
+    some = np.argpartition(values, -count)[-count:] if len(values) > count else np.arange(len(values))
+    found: list[int] = some[np.argsort(values[some])[::-1]].tolist()
+    return found
 
 
 def _finish(

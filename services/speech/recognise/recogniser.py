@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Literal
 
@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.household import Household
+from common.language.normalise import normalise
 from common.language.wordings import INTERRUPTS
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
-from services.speech.recognise.scoring import prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import likeliest, prior_cost, rescored, time_scaled
+from services.speech.recognise.wake_text import without_wake
 
 if TYPE_CHECKING:
     from services.speech.recognise.moonshine import Decoded, EncodedUtterance
@@ -30,8 +32,9 @@ class Recognition:
     """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence.
 
     `free` is the transcription without any grammar (where the wake word was verified, without that, however it was
-    transcribed), `certainty` 0..1 the geometric mean probability of its tokens. `mistaken`: what began the utterance
-    was taken for the wake word and is something else.
+    transcribed), `certainty` 0..1 the geometric mean probability of its tokens, `share` 0..1 how probable it is among
+    other transcriptions, 0 where these were not looked for. `mistaken`: what began the utterance was taken for the wake
+    word and is something else.
     """
 
     text: str
@@ -40,6 +43,7 @@ class Recognition:
     free: str = ""
     certainty: float = 0.0
     mistaken: bool = False
+    share: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -65,13 +69,15 @@ class Recogniser:
 
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
     verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
+    Of transcriptions without the grammar that sound alike, `cost` tells which is unlikely to be said to the robot: a
+    negative log-probability.
     """
 
-    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
+    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar], cost: Callable[[str], float]) -> None:
         from services.speech.recognise.moonshine import Moonshine
         from services.speech.recognise.token_trie import TokenTrie
 
-        self._config = config
+        self._config, self._cost = config, cost
         self._model = Moonshine(config.beam)
         self._trie: Callable[[Grammar], TokenTrie] = lambda grammar: TokenTrie(self._model.tokens, grammar)
         self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
@@ -107,7 +113,29 @@ class Recogniser:
         verdict = verdict_of(score, certainty, config)
         if not rest and verdict != "accept":
             return Recognition("", "ask", confidence, rest, certainty)
-        return Recognition(command.text, verdict, confidence, rest, certainty, mistaken)
+        heard = Recognition(command.text, verdict, confidence, rest, certainty, mistaken)
+        known = not rest or (verdict == "accept" and normalise(rest) == command.text)
+        if scope == "interrupt" or mistaken or known:
+            return heard
+        return self._among_others(heard, self._model.freely(encoded), score_again, scope == "woken")
+
+    def _among_others(
+        self,
+        heard: Recognition,
+        others: list["Decoded"],
+        score: Callable[[list["Decoded"]], list[float]],
+        woken: bool,
+    ) -> Recognition:
+        """With the likeliest of other transcriptions, too, by what may be said to the robot."""
+        if not others:
+            return heard
+        chosen, share = likeliest(others, score(others), self._cost)
+        spelled = normalise(chosen.text, ",")
+        plain = without_wake(spelled, self._config.wake)
+        if woken and plain == spelled:
+            return heard  # in it the wake word reads otherwise: nobody knows where the command begins
+        certainty = math.exp(chosen.log_probability / chosen.tokens)
+        return replace(heard, free=plain if woken else chosen.text, certainty=certainty, share=share)
 
     def _after_wake(
         self,

@@ -77,6 +77,17 @@ def rescored(
     return Choice(command, second if first >= PLAUSIBLE else min(second, first), share)
 
 
+def likeliest(transcriptions: list[S], again: list[float], cost: Callable[[str], float]) -> tuple[S, float]:
+    """The likeliest of different transcriptions, with the `cost` of what each says, and its share 0..1 of the
+    probability of all of them, with those that mean the same.
+
+    `again` are the log-probabilities in the second scoring.
+    """
+    worth = [(t.log_probability + a) / 2 - cost(t.text) for t, a in zip(transcriptions, again, strict=True)]
+    chosen = transcriptions[int(np.argmax(worth))]
+    return chosen, _share(chosen, transcriptions, worth)
+
+
 def _share(chosen: S, sentences: list[S], worth: list[float]) -> float:
     """Probability of what `chosen` means among the `sentences` with these log-probabilities."""
     odds = np.exp((np.array(worth) - max(worth)) / TEMPERATURE)
@@ -85,7 +96,7 @@ def _share(chosen: S, sentences: list[S], worth: list[float]) -> float:
 
 
 def _meaning(text: str) -> tuple[str, ...]:
-    return tuple(word for word in text.split() if word not in DETERMINERS and word != "please")
+    return tuple(word for word in normalise(text).split() if word not in DETERMINERS and word != "please")
 
 
 def time_scaled(samples: Array, factor: float) -> Array:

@@ -76,6 +76,34 @@ class TokenTrie:
             elif character in _PUNCTUATION:
                 self._collect(child, state, numbers, states)
 
-    def letters(self, number: int) -> str:
-        """What a token adds to a sentence of the grammar, which has no punctuation."""
-        return "".join(c for c in self.tokens[number].lower() if c not in _PUNCTUATION)
+    @property
+    def start(self) -> State:
+        """The state before the first token."""
+        return self.grammar.start
+
+    def is_final(self, state: State) -> bool:
+        """True where a sentence may end."""
+        return self.grammar.is_final(state)
+
+
+class AnyTokens:
+    """Every token may follow on every other one, and a sentence end anywhere: what is said without a grammar."""
+
+    start: State = frozenset()
+
+    def __init__(self, tokens: list[str]) -> None:
+        usable = [k for k, t in enumerate(tokens) if k > EOS and t and not t.startswith("<") and t.isascii()]
+        self._allowed = np.array(usable, dtype=np.int64), [self.start] * len(usable)
+
+    def allowed(self, _state: State) -> tuple[NDArray[np.int64], list[State]]:
+        """All token numbers, and the state after each."""
+        return self._allowed
+
+    def is_final(self, _state: State) -> bool:
+        """True everywhere."""
+        return True
+
+
+def letters(token: str) -> str:
+    """What a token adds to a sentence, in lower case and without punctuation."""
+    return "".join(c for c in token.lower() if c not in _PUNCTUATION)
