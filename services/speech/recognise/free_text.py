@@ -49,13 +49,15 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         heard = without_wake(normalise(found.free), config.wake)
         if not found.text or expand(heard) == expand(found.text) or asks_for(found.text, "stop", "cancel", "yes", "no"):
             return found
+        if _breaks_off(free, found):
+            return replace(found, verdict="reject")
         surer = found.certainty > found.confidence and understood(free, names) == "listed"
         if surer or turns(heard, found.text):
             return replace(found, text=free, confidence=min(found.confidence, UNLISTED))
         return replace(found, confidence=min(found.confidence, UNLISTED)) if found.certainty < FAINT else found
     if not free:
         return found  # nothing but the wake word
-    if free.split()[-1] in OPEN and found.certainty >= PLAIN:
+    if _breaks_off(free, found):
         return replace(found, verdict="reject")
     grade = understood(free, names)
     if grade == "listed":
@@ -75,6 +77,11 @@ def cost(text: str, names: Container[str], config: SpeechConfig) -> float:
     """Cost of a transcription before anything was heard, a negative log-probability."""
     plain = without_wake(normalise(text, ",").strip(" ,"), config.wake).strip(" ,")
     return COSTS[understood(plain, names)]
+
+
+def _breaks_off(free: str, found: Recognition) -> bool:
+    """Was the beginning of a sentence heard, more plainly than the whole one that the grammar makes of it?"""
+    return OPEN.issuperset(free.split()[-1:] or [""]) and found.certainty >= max(PLAIN, found.confidence)
 
 
 def _assured(found: Recognition) -> float:
