@@ -8,9 +8,9 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.floor_plan import Box, Room
+from common.floor_plan import Box, FloorPlan, Place, Room, Wall
 from common.geometry import Rectangle
-from common.household import load_household
+from common.household import Household, load_household, mapped
 from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import rectangles
@@ -254,6 +254,12 @@ def test_it_steps_aside_from_one_who_comes_straight_on_and_not_into_furniture() 
         assert spot is not None
         assert math.dist(here, spot) > 0.2
         assert room.line_clearance(here, spot) > 0.3
+
+
+def test_who_stands_their_ground_stops_and_does_not_step_aside() -> None:
+    coming, going = person(1.6, -1.0, -0.8, 0.0), person(2.6, -1.0, 0.8, 0.0)
+    assert avoid((0.0, -1.0), (0.5, -1.0), [coming], costmap(), 0.37, stands=True) == (0.0, -1.0)
+    assert avoid((0.0, -1.0), (0.5, -1.0), [going], costmap(), 0.37, stands=True) is None
 
 
 def test_the_speed_of_a_walker_is_found_and_a_box_stays_a_box() -> None:
@@ -509,3 +515,31 @@ def test_who_stood_there_when_the_robot_came_is_seen_to_walk_on() -> None:
         flat.step(0.05)
     (one,) = [o for o in flat.service._state.tracker.people() if o.moves]
     assert one.vy == pytest.approx(-0.8, abs=0.3)
+
+
+def hallway() -> Household:
+    """Two rooms joined by a corridor of 1.1 m, 5 m long, in which nobody gets past the robot."""
+    ways = [((-2, -2), (9, -2)), ((9, -2), (9, 2)), ((9, 2), (-2, 2)), ((-2, 2), (-2, -2))]
+    for x in (1.5, 6.5):
+        ways += [((x, -2), (x, -0.55)), ((x, 0.55), (x, 2))]
+    ways += [((1.5, -0.55), (6.5, -0.55)), ((1.5, 0.55), (6.5, 0.55))]
+    walls = tuple(Wall(start=a, end=b) for a, b in ways)
+    home = Place(name="home", x=0.0, y=0.0, theta=0.0)
+    return mapped(FloorPlan(name="hallway", low=(-2.0, -2.0), high=(9.0, 2.0), home=home, walls=walls))
+
+
+def test_who_walks_to_and_fro_in_the_only_way_is_followed_as_they_turn_round() -> None:
+    """They turn at both ends of their way, and when they have stood before the robot for 5 s."""
+    flat, x, way, since, least = Flat(household=hallway()), 6.0, -1.0, 0.0, math.inf
+    flat.bus.send(topics.NAV_GOAL, m.NavGoal(id="a.1", x=8.0, y=0.0, theta=0.0))
+    while flat.now < 150.0 and flat.true[0] < 6.6:
+        apart, y = x - flat.true[0], 1.2 if x > 7.0 else 0.0
+        least = min(least, math.hypot(apart, y - flat.true[1]))
+        if way * apart > 0.0 or abs(apart) > 0.7:
+            x, since = x + 0.035 * way, flat.now
+        if not 2.0 < x < 7.2 or flat.now - since > 5.0:
+            x, way, since = min(max(x, 2.0), 7.2), -way, flat.now
+        flat.boxes = [Rectangle(x, y, 0.3, 0.3, 0.0)]
+        flat.step(0.05)
+    assert flat.true[0] > 6.6
+    assert least > 0.45

@@ -29,10 +29,12 @@ TO_TARGET, TO_SPOT = 0.05, 0.03
 """What a metre to the target, and one to the spot, cost in the score [m/m]; chosen: far less than a metre of gap."""
 
 
-def avoid(here: Point, target: Point, obstacles: Sequence[Obstacle], costmap: Costmap, radius: float) -> Point | None:
+def avoid(
+    here: Point, target: Point, obstacles: Sequence[Obstacle], costmap: Costmap, radius: float, stands: bool = False
+) -> Point | None:
     """A better point [map] to go to than `target` while somebody passes; None when going on is fine.
 
-    `radius` is the footprint's [m].
+    `radius` is the footprint's [m]. A robot that `stands` its ground stays where it is instead of stepping aside.
     """
     near = [o for o in obstacles if math.hypot(o.x - here[0], o.y - here[1]) < NEAR + o.radius]
     if not near:
@@ -40,6 +42,8 @@ def avoid(here: Point, target: Point, obstacles: Sequence[Obstacle], costmap: Co
     # Moved a little way off, the target is where the robot would go on to.
     if _gap(here, _beyond(here, target), near, radius) >= WANTED:
         return None
+    if stands:
+        return here
     best, best_score = here, _score(here, here, target, near, radius)
     # Where there is little room already, only towards more: step by step it would be driven into what stands.
     clear = costmap.clearance(*here)

@@ -53,6 +53,7 @@ class Navigator:
         patience: float = PASSING,
     ) -> None:
         self._config, self._map = config, costmap
+        costmap.let_people_pass(False)
         self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
         self._blocked = BlockedTimer(patience)
@@ -98,11 +99,13 @@ class Navigator:
         self._progress.check(now)
         self._recovery.came_by(pose)
         target = self._go_on(pose, points, obstacles, now)
+        here, stands, radius = (pose[0], pose[1]), self._map.people_pass, self._config.footprint_radius
         moving = [o for o in obstacles if o.moves]
-        aside = avoid((pose[0], pose[1]), (target.x, target.y), moving, self._map, self._config.footprint_radius)
+        aside = avoid(here, (target.x, target.y), moving, self._map, radius, stands)
         if aside is None:
             return target
         self.doing = "GIVING_WAY"
+        self._recovery.made_room(now)
         self._progress.excuse(now)
         self._contacts.interrupt()
         return self._targets.aside((*aside, pose[2]))
@@ -206,7 +209,8 @@ class Navigator:
             self.doing = ""
         if ahead.blocked:
             self._progress.excuse(now)
-            self._blocker = "people" if anybody_near((pose[0], pose[1]), obstacles) else "things"
+            somebody = self._map.people_pass or anybody_near((pose[0], pose[1]), obstacles)
+            self._blocker = "people" if somebody else "things"
             self._wait_for(pose, obstacles, now)
             if self._blocked.blocked(self._blocker == "people", now) > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked", by_people=self._blocker == "people")
@@ -233,6 +237,7 @@ class Navigator:
                 self._blocked.clear()
                 return self._targets.next(pose)
             self._blocker = self._route.blocked_by(pose, now)
+            self._map.let_people_pass(self._blocker == "people" and self._recovery.stands_its_ground)
         by_people = self._blocker == "people"
         self._wait_for(pose, obstacles, now, by_people)
         if self._blocker == "newcomers":

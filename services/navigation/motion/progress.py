@@ -27,7 +27,8 @@ HELD_UP = 90.0
 """By how much people put off the time limit of a goal at most [s]: both kinds of waiting and the ways aside."""
 STANDOFF, LATER, MEETINGS = 2.5, 8.0, 3
 """Time [s] after which a person who stands before the waiting robot is given room, and the time after so many meetings
-of one goal [count]; chosen: who comes again and again has no other way, and any time may be the one that suits both."""
+of one goal [count]; chosen: who comes again and again has no other way. From then on a robot that has none either
+stands its ground as somebody comes, as people in a narrow place do, and goes on behind who turns round."""
 
 
 class Progress:
@@ -125,7 +126,17 @@ class Standoff:
 
     def __init__(self) -> None:
         self._since = self._at = -math.inf
-        self._met = 0
+        self._met, self._met_at = 0, -math.inf
+
+    @property
+    def again(self) -> bool:
+        """They have met so often that giving room has not helped."""
+        return self._met >= MEETINGS
+
+    def met(self, now: float) -> None:
+        """Once a step while the robot makes room for who comes: another meeting, unless the last one was just now."""
+        if now - self._met_at > LATER:
+            self._met, self._met_at = self._met + 1, now
 
     def with_whom(self, here: Point, people: Sequence[Obstacle], now: float) -> Point | None:
         """Once a step while a person stands before the robot: where, once that has lasted; None until then."""
@@ -133,7 +144,7 @@ class Standoff:
             self._since = now
         self._at = now
         near = min(people, key=lambda o: math.dist((o.x, o.y), here), default=None)
-        if near is None or now - self._since < (STANDOFF if self._met < MEETINGS else LATER):
+        if near is None or now - self._since < (LATER if self.again else STANDOFF):
             return None
-        self._since, self._met = now, self._met + 1
+        self._since, self._met, self._met_at = now, self._met + 1, now
         return near.x, near.y

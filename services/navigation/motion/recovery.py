@@ -27,6 +27,15 @@ class Recovery:
         self._retries = 0
         self.under_way: Retreat | PassingPlace | None = None
 
+    @property
+    def stands_its_ground(self) -> bool:
+        """Room was given to people again and again, and they came back each time."""
+        return self._standoff.again
+
+    def made_room(self, now: float) -> None:
+        """Once a step while it stops or steps aside for who comes."""
+        self._standoff.met(now)
+
     def came_by(self, pose: Pose2) -> None:
         """Once a step: where the robot is [map]."""
         self._breadcrumbs.add(pose)
@@ -55,7 +64,12 @@ class Recovery:
         self.under_way = Retreat(back, now + config.back_off_time, config.corridor)
 
     def let_pass(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
-        """Once a step while a person stands before the robot: who waits for it to go first gets room."""
+        """Once a step while a person stands before the robot: who waits for it to go first gets room.
+
+        Not once it goes on behind them: who it loses sight of is soon forgotten to be a person.
+        """
+        if self._map.people_pass:
+            return
         person = self._standoff.with_whom((pose[0], pose[1]), people, now)
         if person is None:
             return

@@ -47,6 +47,7 @@ class Costmap(Cells):
         self._distance: Array | None = self.static_distance
         self._discs: dict[str, list[tuple[float, float, float]]] = {}
         self.version = 0
+        self.people_pass = False
         reach = math.ceil(_REACH / resolution)
         offsets = np.arange(-reach, reach + 1) * resolution
         self._disc: Array = np.hypot(offsets, offsets[:, None])
@@ -86,8 +87,15 @@ class Costmap(Cells):
     def distance(self) -> Array:
         """To the nearest obstacle, static or seen [m]; made when asked for."""
         if self._distance is None:
-            self._distance = self._distances(self._seen.known)
+            self._distance = self._distances(self._seen.things if self.people_pass else self._seen.known)
         return self._distance
+
+    def let_people_pass(self, passing: bool) -> None:
+        """Whether paths lead through people, who walk on, or round them; the lidar's brake is for all of them."""
+        if passing != self.people_pass:
+            self.people_pass = passing
+            self._distance = None
+            self.version += 1
 
     def distance_but_for_people(self) -> Array:
         """The same as if nobody stood anywhere."""
