@@ -6,6 +6,8 @@ verb that is left out. `common/language/word_order.py` applies them.
 
 import re
 
+from common.language.verb_classes import one_of
+
 TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
 _BESIDE = "(?:next to|close to|beside|near|right by|by)"
 MODAL = "(?:should|may|might|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|will)"
@@ -71,8 +73,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP} is (?:what|the one|all)(?: that)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
         (r"(?:i|we) (?:can|could|may|might) (?:have|get|borrow|use) ((?:the|my|an?|some|one|two|another|that) .+)",
          r"i want \1"),
-        (rf"(?:it|that) would (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
-         rf"(?:have|get)|having|getting|if (?:i|we) (?:had|got|could "
+        (rf"(?:(?:it|that) would|would it) (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
+         rf"(?:have|get|ask for)|having|getting|if (?:i|we) (?:had|got|could "
          rf"have)) {NP}", r"i want \1"),
         (r"((?!(?:can|could|would|will|do|you|please|he|she|they|who)\b)(?:\w+ ){1,4}?\w+) "
          r"(?:bring|give|get|hand|pass) (?:me|us)",
@@ -100,13 +102,16 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          rf"goes|go|ends? up)"
          rf" (?:back |put |placed )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
         # Looking whether something is there.
-        (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and "
-         rf"(?:tell me|see|let me know|"
-         rf"report|say)(?: back)? (?:if|whether) (?:there is|there are|you (?:can )?(?:see|find)) {NP}(?: there)?",
-         r"check \1 for \2"),
-        (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and "
-         rf"(?:tell me|see|let me know|"
-         rf"report|say)(?: back)? (?:if|whether) {NP} (?:is|are) (?:still )?(?:there|on it|in it)", r"check \1 for \2"),
+        (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and (?:tell me|see|let me "
+         rf"know|report|say)(?: back)? (?:if|whether) (?:(?:there is|there are|you (?:can )?(?:see|find)) {NP}(?: "
+         rf"there)?|{NP} (?:is|are) (?:still )?(?:there|on it|in it))", r"check \1 for \2\3"),
+        # Verbs that no wording has, by what they can ask for where a place follows.
+        (rf"(?:{one_of('go')}) (?:yourself )?(?:(?:over|back|across|along|off|on|down|up) )*(?:to|into) {NP}",
+         r"go to \1"),
+        (rf"(?:{one_of('put')}) ((?:the|my|our|a|an|that) .+?) (?:(?:over|across|along|up) )*(to|into|onto|on) {NP}",
+         r"take \1 \2 \3"),
+        (rf"(?:it|i|we) would (?:\w+ ){{1,4}}?(?:it )?if {NP} (?:was|were|is) (?:back )?({TO_PLACE}|{_BESIDE}) {NP}",
+         r"put \1 \2 \3"),
         # Two places, one of them beside something.
         (rf"(put|place|set|move|lay|stick|pop) {NP} (?:that|which) (?:is|stands|lies) (?:on|in|at) "
          rf"{NP} (?:on|in|at|onto) {NP} "
@@ -119,10 +124,9 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r"(\w+)(?: me)? (?:whatever|(?:all )?what|anything that|all that|(?:all )?the stuff that) (?:is|lies|"
          r"stands) (.+)", r"\1 everything \2"),
         # A quality that a place or a thing is to have.
-        (rf"(?:make|get|have|keep) {NP} (?:look |be |all )?(?:very |really |a bit )?(?:nice and |neat and )?"
-         r"(?:clean|tidy|clear|neat|nice|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1"),
-        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? {NP} (?:is|gets|looks|be) (?:all |nice and )?"
-         r"(?:clean|tidy|clear|neat|empty|spotless|free of \w+)", r"tidy \1"),
+        (rf"(?:(?:make|get|have|keep) {NP}(?: look| be| all)?|(?:make sure|see to it|ensure|make certain)(?: that)? "
+         rf"{NP} (?:is|gets|looks|be)) (?:all |very |really |a bit )?(?:nice and |neat and )?(?:clean|tidy|clear|neat|"
+         r"nice|empty|free of \w+|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1\2"),
     )
 )  # fmt: skip
 VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(

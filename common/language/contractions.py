@@ -8,44 +8,42 @@ import re
 from common.language.lexicon import A_VERB
 
 _OF_PEOPLE = "i|you|we|they|he|she|it|who"
+_SPELLINGS = {
+    word: " ".join(plain.split("_"))
+    for row in (
+        "thanks thx tnx thanx cheers", "give_me gimme gimmie", "right_now rn", "never_mind nvm nm", "let_me lemme",
+        "something sth smth sumthin somethin", "i_will imma i'mma ima", "want_to wanna wantta gotta", "out_of outta",
+        "going_to gonna gon", "do_you d'you", "because cuz coz cos", "oclock o'clock", "that dat", "any_more anymore",
+        "_ tho tbh ngl fr innit lol imo kinda sorta",
+    )
+    for plain, *words in (row.split(),)
+    for word in words
+}  # fmt: skip
+"""Spoken spellings of single words."""
+_SPELLED = re.compile(rf"\b(?:{'|'.join(_SPELLINGS)})\b")
 _CONTRACTIONS = tuple(
     (re.compile(short), long)
     for short, long in (
         # Spoken spellings.
         (r"([a-z])\1{2,}", r"\1"),
         (r"\b(?:pls|plz|plox|ple+a+se+)\b", "please"),
-        (r"\b(?:thx|tnx|thanx|cheers)\b", "thanks"),
-        (r"\b(?:gimme|gimmie)\b", "give me"),
         (r"\b(?:nah|naw|noo+)\b(?= \w|, )", "no"),
-        (r"\brn\b", "right now"),
         (r"\br u\b", "are you"),
         (r"\bu\b(?!-)", "you"),
         (r"\b2 (?=me\b|us\b|the\b|da\b|my\b)", "to "),
         (r"\b4 (?=me\b|us\b)", "for "),
-        (r"\b(?:nvm|nm)\b", "never mind"),
         (r"\b(?:might|could|would) you(?: perhaps| maybe| possibly)? have (?=seen|noticed|found)", "have you "),
-        (r"\b(?:tho|tbh|ngl|fr|innit|lol|imo)\b", ""),
         (r"\b(?:forgive me|my (?:bad|mistake)|(?:my )?apologies|pardon me|w?h?oops(?:ie)?)\b,?(?= \w|, )", "sorry"),
         (
             r"\b(i|we) should (?=(?:(?:so|very|most|really|much|rather) )*(?:be|like|love|appreciate|prefer)\b)",
             r"\1 would ",
         ),
         (r"\bif you were to (?=\w)", "if you would "),
-        (r"\blemme\b", "let me"),
-        (r"\b(?:sth|smth|sumthin|somethin)\b", "something"),
         (r"\b(?:da|de|ze|teh)(?= \w)", "the"),
-        (r"\b(?:imma|i'mma|ima)\b", "i will"),
-        (r"\b(want|got)ta\b|\bwanna\b", "want to"),
-        (r"\b(?:gonna|gon)\b", "going to"),
         (r"\b(could|would|can|did|do|will)(?:ja|cha|ya)\b", r"\1 you"),
         (r"\bya(?= know\b| see\b)|(?<=can )ya\b|(?<=could )ya\b|(?<=would )ya\b|(?<=will )ya\b", "you"),
-        (r"\bd'you\b", "do you"),
         (r"(?<!\w)'em\b|\bem\b", "them"),
-        (r"\b(?:kinda|sorta)\b", ""),
-        (r"\b(?:cuz|coz|cos)\b|(?<!\w)'cause\b", "because"),
-        (r"\bo'clock\b", "oclock"),
-        (r"\boutta\b", "out of"),
-        (r"\banymore\b", "any more"),
+        (r"(?<!\w)'cause\b", "because"),
         (r"\b(what|where|who|how|when|why)'?d (?=i|you|we|they|he|she)", r"\1 did "),
         (r"\b(?:two|too) (?=(?:the|my|our) )", "to "),
         (r"\bin here\b", "here"),
@@ -91,7 +89,8 @@ _SAME = tuple(
         (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
         (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
          r"devil|exactly|actually)\b", r"\1"),
-        (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)", ""),
+        (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)|\bfor the life of (?:me|us)\b", ""),
+        (r"\bto wherever (?=.+ (?:is|are|stands)$)", "to where "),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
         (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
         (r"\b(the \w+) ones? of the (\w+?)s\b", r"\1 \2"),
@@ -103,7 +102,11 @@ _SAME = tuple(
             r"\w+)?|there|around|about|left))[.?!]?$",
             r"is there \1"
         ),
+        (r"^(?:you )?(seen(?= (?:the|my|our|any|that)\b)|got(?= any\b)) ", r"have you \1 "),
         (r"\bhow come\b", "why"),
+        (r"\b(once|as soon as) ((?:the|my) (?:\w+ )?\w+) (?:is|are) (?=(?:in|on|into|onto)\b)", r"\1 you put \2 "),
+        (r"\b(?:put|move|set|place) (.+?) where (.+?) is,? and \2 where \1 is\b", r"swap \1 and \2"),
+        (rf"\b({A_VERB}) what (?:you are (?:holding|carrying)|is in your hand) (?=in|on|to|back)", r"\1 it "),
         (r"\bany (?:notion|inkling|clue|hint)\b", "any idea"),
         (r"\b(?:(?:that|which) (?:is having|has)|with) (?:a |the )?(\w+) colou?r\b", r"that is \1"),
         (r"\boff you (?:go|pop|trot|toddle|run)(?: then)? (?=to|into)", "go "),
@@ -127,7 +130,6 @@ _SAME = tuple(
             rf"(?<=\bif )there is nothing (?:left )?(?:on|in|at) ((?:the|my|our) \w+(?: (?!then\b|{A_VERB}\b)\w+)?)",
             r"\1 is empty",
         ),
-        (r"\bdat\b", "that"),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),
@@ -148,6 +150,7 @@ _TO_BE_SAID = re.compile(r"^(?:(?:please|can you|could you|would you|go|and) )*(
 
 def expand(text: str) -> str:
     """Normalised text with `what's` written as `what is` and `plus` as `and`."""
+    text = _SPELLED.sub(lambda found: _SPELLINGS[found[0]], text)
     for short, long in _CONTRACTIONS if _TO_BE_SAID.match(text) else (*_CONTRACTIONS, *_SAME):
         text = short.sub(long, text)
     return " ".join(text.split()) if "  " in text else text

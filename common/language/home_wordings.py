@@ -5,8 +5,8 @@ from common.language.wording import Wording
 
 _ON = "(on | in | into | onto | at | inside)"
 _ALWAYS = (
-    "(always | from (now | today | this day) on | from today | as of now | starting today | henceforth | in future"
-    " | in the future | generally)"
+    "(always | from (now | here | today | this day) on | from today | as of now | starting today | henceforth"
+    " | in [the] future | generally)"
 )
 _BELONG = (
     "(go | goes | (have their | has its) place | belong | belongs | live | lives | "
@@ -20,13 +20,8 @@ _THE = "[the | my | our | a]"
 TOLD: tuple[Wording, ...] = (
     Wording(
         "name_place",
-        f"[(remember | learn) [that | and]] (this | that) <thing> is [called | named] {_THE} <words>"
-        f" | (call | name) (this | that) <thing> {_THE} <words>",
-    ),
-    Wording(
-        "name_place",
-        f"[(remember | learn) [that | and]] (this | that | here) is [called | named] {_THE} <words>"
-        f" | (call | name) (this | that | here) {_THE} <words> "
+        f"[(remember | learn) [that | and]] ((this | that) <thing> | this | that | here) is [called | named] {_THE}"
+        f" <words> | (call | name) ((this | that) <thing> | this | that | here) {_THE} <words>"
         f" | (remember | learn) (this | that | here) [place | spot] as {_THE} <words>"
         f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
         f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"

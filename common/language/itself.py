@@ -69,7 +69,7 @@ _TOPICS = tuple(_Topic(action, tuple(frozenset(g.split()) for g in row.split(" +
 WORDS: frozenset[str] = frozenset[str]().union(*(group for topic in _TOPICS for group in topic.groups))
 _REST = (
     "level state indicate house flat home apartment place many had else left along whole long we low enough use full "
-    "make"
+    "make remind"
 )
 _SMALL = (SMALL_TALK | WORDS | set(_REST.split())) - {"and"}
 _ASKED = re.compile(

@@ -16,7 +16,7 @@ from common.language.wording import QUESTIONS, Action, Kind, Wording
 from common.language.wordings import WORDINGS
 
 _INTERROGATIVE = re.compile(
-    r"^(?:(?:tell me |do you know )?(?:what(?! about)|where|who|whose|why|which|when did|how(?! about))"
+    r"^(?:(?:tell me |remind me |do you know )?(?:what(?! about)|where|who|whose|why|which|when did|how(?! about))"
     r"|is|are|was|were|did|does|has|have you|do (?:you|we) (?:see|know|have|remember))\b"
 )
 """How questions begin that are no orders in the form of one."""

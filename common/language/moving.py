@@ -49,24 +49,24 @@ MOVING: tuple[Wording, ...] = (
         " (it | they | that) (was | were | came from | had been | stood | has been | belongs | used to be) [before]"
         " | (put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where) (you | i)"
         " (found | got | took | had | picked | took) (it | them | that) [up] [from]"
-        " | (put | place | set | take) <thing> back | return <thing> | take <thing> away"
+        " | (put | place | set | take) <thing> back | return <thing> | take <thing> away | (undo | revert) <thing>"
         " | (put | take | bring | return) <thing> [back] (to its place | in its place)",
         heard="put (it | that) back [where it was]",
     ),
     Wording(
-        "put_away", "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)"
+        "put_away",
+        "put <thing> [back] (where (it belongs | they belong) | (in | to) its place | in order)"
+        " | sort [out] <thing> | <thing> (needs | need) (putting | to be put) away",
     ),
-    Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away"),
     Wording(
         "put_where",
         f"({PUT} | bring | take | carry) <thing> [over] [to] where (<spot> (is | are | stands | lies) | (is | are) "
         f"<spot>)",
     ),
-    Wording("swap", "(swap | exchange | switch | trade) [over | around | round] <thing> [over | around | round]"),
-    Wording("swap", "(swap | exchange | switch | trade) <thing> with <spot> [over | around | round]"),
     Wording(
         "swap",
-        "(swap | exchange | switch | change) the (places | positions) of <thing>"
+        "(swap | exchange | switch | trade) [over | around | round] <thing> [with <spot>] [over | around | round]"
+        " | (swap | exchange | switch | change) the (places | positions) of <thing>"
         " | (make | let) <thing> (swap | change | trade | exchange | switch) (places | positions)",
     ),
     # Bringing.
@@ -121,20 +121,18 @@ MOVING: tuple[Wording, ...] = (
     ),
     Wording("pick_up", "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>"),
     Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
-    Wording("find", "check on <thing> | keep an eye (out | open) for <thing> | watch out for <thing>"),
-    Wording("put_back", "undo <thing> | revert <thing>"),
     Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
-    Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]"),
     Wording(
         "find",
-        "(i | we) [have] (lost | misplaced | mislaid) <thing>"
-        " | (i | we) [have] (left | put) <thing> (somewhere | around here)",
+        "check on <thing> | keep an eye (out | open) for <thing> | watch out for <thing>"
+        " | (i | we) (can not | cannot | could not | did not) find <thing> [anywhere]"
+        " | (i | we) [have] (lost | misplaced | mislaid) <thing>"
+        " | (i | we) [have] (left | put) <thing> (somewhere | around here)"
+        " | show me where <thing> (is | are) | (search | look | look around) [through | in] <spot> for <thing>"
+        " | ((have | take) a look [around | round] | look (around | round)) for <thing>"
+        " | (help me | try to) (look for | find | search for | locate) <thing>",
     ),
-    Wording("find", "show me where <thing> (is | are)"),
-    Wording("find", "((have | take) a look [around | round] | look (around | round)) for <thing>"),
-    Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>"),
-    Wording("find", "(search | look | look around) [through | in] <spot> for <thing>"),
     Wording("fetch", f"({FETCH} | get) <thing>"),
     Wording("wish_at", f"{PERSON} {WISH} <thing> [to be] {ON} <spot>"),
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),

@@ -40,7 +40,8 @@ _ADDRESS = (
     r"leave|set)\b)|"
     r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
     r"come|tidy|find|grab|pick)\b)|"
-    "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
+    "henceforth(?= call\\b)|basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|"
+    "in that case|"
     r"i hate to (?:ask|bother you|trouble you)|i know you are busy|no offence|like(?=,? (?:can|could|would|i|you)\b)|"
     r"(?:scratch|disregard|ignore) that(?=,? \w)|(?:(?:yes|yeah|yep|sure|right|ok|okay|now|well)(?: "
     r"then)?|wait)(?=,(?! (?:then|and)\b))|"
@@ -93,7 +94,8 @@ _FRAMES = (
     rf"|be (?:\w+ ){{1,6}}?(?:to|and|as to))\b)?",
     rf"(?:execute|perform|initiate|commence|proceed to|carry out)(?: an?| the)?(?= {A_VERB}\b)",
     r"want to(?=\s+\w)|(?<=please )(?:you|to)(?= \w)",
-    r"you(?= (?:bring|give|take|go|get|fetch|throw|find|come|carry|move|clean|tidy|grab|pick)\b"
+    r"you(?= (?:bring|give|take(?= .+ (?:to|from|off|out|into|and|up)\b)|go|get|fetch|throw|find|come|carry|move|"
+    r"clean|tidy|grab|pick)\b"
     r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
     rf"you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|ought to|are going to|shall|"
     r"will)",
@@ -128,7 +130,7 @@ _FRAMES = (
 _ENDINGS = (
     "(?:it )?(?:does|do) not matter(?: which(?: one)?)?|(?:i|we) do not (?:mind|care) which(?: one)?|"
     "(?:pretty )?please(?: with .+)?|right now|(?:right )?about now|right away|now|quickly|at once|"
-    "immediately|straight away|for me|(?:just )?for now|"
+    "immediately|straight away|this instant|for me|(?:just )?for now|"
     "at the moment|at all|at present|currently|"
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
@@ -149,6 +151,7 @@ _ENDINGS = (
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
     r"that is (?:the one|what) (?:i|we) (?:want|need|would like|meant|mean|am after)|handy|to hand|"
+    r"(?:and |but )*do not (?:let (?:it )?go(?: of it)?|bring it)|(?:and |but |just )*hold (?:on to |onto )?it|"
     r"or (?:so help me|else)|by the time .+|(?:good)?bye(?: bye)?|"
     r"and leave (?:it|them)(?: there| alone)?|(?<!are )(?<!is )you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
     "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"

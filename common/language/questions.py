@@ -56,8 +56,6 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "extreme",
         f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> (is | are) [the] <words>",
     ),
-    Wording("where", f"{ASK} where <thing> (is | are | was | went | has gone | have gone | might be | "
-                     f"could be)"),
     Wording(
         "where",
         f"{ASK} (where | when) (did | do | would | can | could | have) (you | i | we) [last]"
@@ -67,44 +65,31 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "where",
         "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]"
-        " | (can | could) (i | we) (find | see) <thing> | have you <thing> seen | did (i | we | somebody | someone "
-        "| anybody | anyone) (leave | put | forget | "
-        "lose) <thing>",
-    ),
-    Wording(
-        "where",
-        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) ({BE} <thing> | "
-        f"<thing> {BE}) [in | on]",
-    ),
-    Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]"),
-    Wording(
-        "exists",
-        f"{ASK} (is | are) there [still] <thing> [lying | standing] [left | anywhere | around | here | somewhere]",
+        " | (can | could) (i | we) (find | see) <thing> | have you <thing> seen | did (i | we | somebody | someone"
+        " | anybody | anyone) (leave | put | forget | lose) <thing> | (do | can) you (see | know) <thing> [anywhere"
+        f" | somewhere] | {ASK} [in | on] (which | what) (room | place | surface | shelf | table) ({BE} <thing> |"
+        f" <thing> {BE}) [in | on]"
+        f" | {ASK} where <thing> (is | are | was | went | has gone | have gone | might be | could be)",
     ),
     Wording(
         "exists",
-        "(do we | have we | do i | do you [happen to] | happen to | would you happen to) [still] (have | got) "
-        "<thing> [left | anywhere | somewhere]",
+        f"{ASK} (is | are) there [still] <thing> [lying | standing] [left | anywhere | around | here | somewhere]"
+        " | (check | find out | see) (if | whether) <thing> (is | are) [still] (anywhere | around | here | somewhere)"
+        " | (do we | have we | do i | do you [happen to] | happen to | would you happen to) [still] (have | got)"
+        " <thing> [left | anywhere | somewhere]",
     ),
     Wording(
         "is_at",
-        "([tell me | let me know | do you know] whether | (tell me | let me know | do you know) if)"
-        " <thing> (is | are) [still] (in | on | at) <spot>"
-        " | (confirm | verify | double check) [that | if | whether] <thing> (is | are) [still] (in | on | at) <spot>",
+        "([tell me | let me know | do you know] whether | (tell me | let me know | do you know) if | (confirm | verify"
+        " | double check) [that | if | whether]) <thing> (is | are) [still] (in | on | at) <spot>"
+        f" | {ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]",
     ),
-    Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
-                     f"<spot> [still]"),
-    Wording("number", f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
-                      f"seen | did you see | do we have | have we "
-                      f"got | there are]"
-        f" [there | {LYING} | left] (on | in | at) <spot>"),
     Wording(
         "number",
-        f"{ASK} how many [of] <thing> [(are there | there are | do (we | i | you) (have | own) | have "
-        f"(we | i) got | do "
-        f"you (see | know | remember) | can you see | have "
-        f"you seen | do we have |"
-        f" {BE} (left | here | around))] [left]",
+        f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you seen | did you see"
+        f" | do we have | have we got | there are] [there | {LYING} | left] (on | in | at) <spot>"
+        f" | {ASK} how many [of] <thing> [{BE} there | there are | do (we | i | you) (have | own) | have (we | i) got"
+        f" | do you (see | know | remember) | can you see | have you seen | {BE} (left | here | around)] [left]",
     ),
     Wording(
         "colour",
@@ -124,7 +109,7 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     Wording(
         "doing",
         "what are you doing | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
-        "for | taking | after) | what did (i | we) (ask | tell) you [for | to do | to bring | to get | to fetch]",
+        "for | taking | after)",
         heard="what are you doing",
     ),
     Wording(
@@ -156,8 +141,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         heard="say that again",
     ),
     Wording("battery", "how full is your battery"),
-    Wording("identity", "who are you", heard="who are you"),
     Wording("rooms", "(which | what) (rooms | places) are in <words>"),
+    Wording("identity", "who are you", heard="who are you"),
     Wording(
         "thanks",
         "(thank you | thanks | cheers) [very much | a lot | so much | robot] | (well | good) (done | job)"

@@ -4,7 +4,7 @@ import re
 
 from common.language.contrasts import CONTRAST, contrasted, instead, with_qualities
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING, HANDLING
+from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.noun_phrase import WHICH
 from common.language.politeness import without_politeness
@@ -16,7 +16,8 @@ _REPAIR = re.compile(
     r"|,?\s+(?:(?:no|ah|oh),? (?:wait|hold on|hang on|sorry|no)"
     r"|wait,? no|sorry,? no|(?:no,? |sorry,? )?i mean(?:t)?|(?:no,? )?make (?:that|it)|scratch that|correction|"
     r"or rather|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better (?:yet|still)|no,? not that|"
-    r"on second thoughts?)(?:,\s*|\s+))(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
+    r"on second thoughts?)(?:,\s*|\s+))(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|"
+    r"no|scratch that)?\b[,.]?\s*"
 )
 """Between what was said and what was meant."""
 _AFTERTHOUGHT = re.compile(
@@ -30,7 +31,7 @@ _DISLOCATED = re.compile(
     r"(?P<thing>(?:the|my|a|an|all|both) [^,]+?)(?: i mean(?:t)?)?$"
 )
 _PRESENTED = re.compile(
-    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
+    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our|whichever) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
     r"could you|would you)\s+)*\w+"
     r"(?: me)? (?:it|them|that|those|one)\b.*|"
     r"(?:what|which|where|whereabouts|how|is|are|i|we)\b[^,]* (?:it|they|them)\b.*)$"
@@ -53,11 +54,15 @@ _LATE_EXCEPT = re.compile(
 _AS_IT_IS = "(?: (?:there|here|put|alone|be|out|in peace|(?:where|as) (?:it|they) (?:is|are)))?"
 _SPARED = re.compile(
     r"^(?P<said>.+?)(?:,\s*|,? (?:and|but|only|just|though|while) )(?:(?:please )?(?:hands off|(?:do not|never) (?:"
-    r"touch|move|take)|leave|spare|keep|ignore|skip|stay away from) (?P<one>(?:the|my|our|any) [^,]+?)|"
+    r"touch|move|take)|leave|spare|keep|ignore|skip|stay away from) (?P<one>(?:the|my|our|any|everything) [^,]+?)|"
     r"(?P<other>(?:the|my|our) [^,]+?) (?:(?:can|may|should|must|has to|is to|will) )?(?:stays?|remains?))"
     rf"{_AS_IT_IS}(?: though| please)?$"
 )
 """What is not to be touched, said behind a command that would."""
+_SPARED_FIRST = re.compile(
+    r"^(?P<spared>leave (?:the|my|our|everything) [^,]+? (?:alone|be|in peace|(?:where|as) (?:it|they) (?:is|are))),? "
+    rf"(?:and |but |just )+(?P<said>{A_VERB} .+)$"
+)
 _EXCEPT = re.compile(r",\s*(?:and |but |only |just )?(?=(?:not|except|but not|apart from|other than)\b)")
 _REFINEMENT = re.compile(
     r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
@@ -81,6 +86,7 @@ _NOT_THAT_ONE = re.compile(
     r"(?P<more>(?:,? (?:and|or|nor)(?: not)? (?:the|a|my|that) (?:\w+ )?one)*)$"
 )
 _SEVERAL = re.compile(r"\b(?:all|every|everything|any|do|does|did|(?:the|my|those|these) (?:\w+ )?\w+s)\b")
+_SPARABLE = re.compile(rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}")
 _WHERE_IT_IS = re.compile(
     r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
     r"(?: lying| standing| still| somewhere)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
@@ -109,10 +115,7 @@ def settled(text: str, is_place: IsPlace) -> str:
         others = re.sub(r",? (?:and|nor) not | nor ", " or ", found["more"])
         one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
         text = f"{found['said']}{one_of}"
-    if (found := _SPARED.match(text)) and re.search(
-        rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}", found["said"]
-    ):
-        text = f"{found['said']} except {found['one'] or found['other']}"
+    text = _without_spared(_SPARED_FIRST.sub(r"\g<said> but \g<spared>", text))
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
     if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
         text = f"{found['said']} {found['where']}"
@@ -126,6 +129,18 @@ def settled(text: str, is_place: IsPlace) -> str:
     bare = without_politeness(text)
     meant = instead(bare) or contrasted(bare)
     return text if meant == bare else meant
+
+
+def _without_spared(text: str) -> str:
+    """What is not to be touched as an exception of a command for several things; left out where it is of another."""
+    found = _SPARED.match(text)
+    if found is None:
+        return text
+    said, spared = found["said"], found["one"] or found["other"]
+    alike = set(spared.split()) & ({"one", "ones", *said.split()} - DETERMINERS)
+    if _SPARABLE.search(said) or (alike and re.search(r"\b(?:an?|another|some) ", said)):
+        return f"{said} except {spared}"
+    return said if found["one"] and not alike and verb_first(without_politeness(said)) else text
 
 
 def _with_noun(text: str) -> str:
@@ -221,7 +236,8 @@ def _apposed(text: str) -> str:
         if not of_it:
             kept.append(part)
             continue
-        kept[-1], merged = " ".join((*words[:begin], *filled(part, " ".join(said)).split(), *words[end:])), True
+        name = " ".join(w for w in said[1:] if w not in WHICH)
+        kept[-1], merged = " ".join((*words[:begin], part.removesuffix("one").strip(), name, *words[end:])), True
     return ", ".join(kept)
 
 

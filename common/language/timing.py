@@ -19,7 +19,7 @@ _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.
 _LAST = re.compile(
     rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER})$"
 )
-_PASS = re.compile(rf"^(?:let|allow) (?:for )?(?P<time>{DURATION}) (?:to )?(?:pass|go by|elapse)$")
+_PASS = re.compile(rf"^(?:let|allow|do not move)(?: for)? (?P<time>{DURATION})(?: (?:to )?(?:pass|go by|elapse))?$")
 _STAY = re.compile(
     rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
     rf"(?=stay|remain|wait|stand))?(?:stay|remain|wait|stand|stop|hang "

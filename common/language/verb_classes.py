@@ -5,7 +5,7 @@ The classes are those of Levin, "English Verb Classes and Alternations", 1993, a
 
 from typing import Literal
 
-from common.language.lexicon import BRING, DISCARD, FETCH, GO, MOVE, PUT, SEEK, THROW, TIDY
+from common.language.lexicon import BRING, COMMANDING, DISCARD, FETCH, GO, MOVE, PUT, SEEK, THROW, TIDY
 from common.language.normalise import infinitive
 
 VerbClass = Literal["bring", "wish", "put", "discard", "tidy", "go", "seek", "hold", "look", "say", "wait"]
@@ -34,6 +34,11 @@ _CLASSES: dict[VerbClass, frozenset[str]] = {
     name: frozenset(words.split()) - _PARTICLES for name, words in _WORDS.items()
 }
 VERBS: frozenset[str] = frozenset[str]().union(*_CLASSES.values())
+
+
+def one_of(name: VerbClass) -> str:
+    """Regular expression for a verb of the class that no wording begins with, and that asks for nothing else."""
+    return "|".join(sorted(_CLASSES[name] - COMMANDING - {"be", "make", "let", "keep"}))
 
 
 def classes(word: str) -> frozenset[VerbClass]:

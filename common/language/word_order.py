@@ -62,7 +62,8 @@ def reworded(words: Words, verbs_only: bool = False, deeper: bool = True) -> Ite
 
 
 _WITHIN = (
-    (re.compile(r"\bwhichever (\w+) is (?:the )?(closest|nearest|biggest|smallest|tallest|shortest)"), r"the \2 \1"),
+    (re.compile(r"\bwhichever (\w+) is (?:the )?((?:clos|near)est to)\b"), r"the \1 \2"),
+    (re.compile(r"\bwhichever (\w+) is (?:the )?(\w+est)\b(?! to\b)"), r"the \2 \1"),
     (re.compile(r"\banother$"), "another one"),
     (re.compile(r"\b(?:the )?(?:others|rest)$"), "the other ones"),
     (

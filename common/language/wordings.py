@@ -100,11 +100,10 @@ WORDINGS: tuple[Wording, ...] = (
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>"
         " | (remember | learn) <thing> as (my | our) <words>",
     ),
-    Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>"),
     Wording(
         "forget",
-        "(forget | unlearn) the name [of] [the] <words>"
-        " | (forget | unlearn) that (it | this | that | <thing>) is (called | named) [my | our | the] <words>",
+        "(forget | unlearn) ([about] [the name [of] | what is] (my | our) | the name [of] [the]"
+        " | that (it | this | that | <thing>) is (called | named) [my | our | the]) <words>",
     ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)"),
     Wording(
@@ -123,21 +122,19 @@ WORDINGS: tuple[Wording, ...] = (
     # The robot itself.
     Wording(
         "say",
-        "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>"
-        " | tell (everybody | everyone | people) in <spot> that <words>"
-        f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | tell (them | everybody | everyone | "
-        f"people | the others) <words>"
-        " | inform (everyone | everybody | them | people) [that] <words> | let (them | everybody | everyone | "
-        "people) know [that] <words>"
-        f" | let (my | our | the) {FAMILY} know "
-        "[that] <words>",
+        "(say | announce) [that] <words> | (tell | inform) <thing> that <words>"
+        " | tell (everybody | everyone | people) in <spot> that <words> | (tell | inform)"
+        f" ((my | our | the) {FAMILY} | them | everybody | everyone | people | the others) [that] <words>"
+        f" | let (them | everybody | everyone | people | (my | our | the) {FAMILY}) know [that] <words>",
     ),
     Wording("wait", "(wait | pause | hold [your] position) [here | there | a moment | a bit | a while | for me]",
             heard="wait"),
     Wording(
         "wait",
         "(wait | pause | sleep | hold (on | off) | hang (on | about | around) | stay [here | there] | stand by | rest) "
-        "[here | there] [for] <words>",
+        "[here | there] [for] <words>"
+        " | (give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
+        " | do nothing for <words> | take a break (for | of) <words>",
     ),
     Wording(
         "look_around",
@@ -152,53 +149,38 @@ WORDINGS: tuple[Wording, ...] = (
         f" | [go [and]] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
         f" | (search | inspect | survey | scan | explore) <spot>",
     ),
-    Wording("check", "(check | inspect | scan) <spot> for <thing>"),
     Wording(
         "check",
-        f"[go [over] [and | to]] {LOOK} (if | whether) (there is | there are | you (see | find) | "
-        f"we have) [still] <thing>"
-        f" [left]",
-    ),
-    Wording(
-        "check",
-        f"[go [over] [and | to]] {LOOK} (if | whether) (somebody | someone | anybody | anyone | i | we | they | "
-        f"you) [has | have]"
-        f" (left | put | forgotten | forgot | dropped) <thing>"
-        f" | [go [over] [and | to]] {LOOK} (if | whether) <thing> (is | are) [still] (in | on | at) <spot>",
+        "(check | inspect | scan) <spot> for <thing>"
+        f" | [go [over] [and | to]] {LOOK} (if | whether)"
+        " ((there is | there are | you (see | find) | we have) [still] <thing> [left] | (somebody | someone | anybody"
+        " | anyone | i | we | they | you) [has | have] (left | put | forgotten | forgot | dropped) <thing>"
+        " | <thing> (is | are) [still] (in | on | at) <spot>)",
     ),
     Wording(
         "find",
         f"[go [and] | help me [to] | try [to | and]] {LOOK} (if | whether) you can (find | see | spot) <thing>",
     ),
-    Wording(
-        "wait",
-        "(give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
-        " | do nothing for <words> | take a break (for | of) <words>",
-    ),
     Wording("wait_there", "[go [and]] (wait [for me] | stay | stand) (in | at | by | near) <spot>"),
-    Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
-        "come_back", "(come | go | drive | get) [on] [over] (here | back | to me | back here | back to me)",
-        heard="come (here | back)",
+        "come_back",
+        "(come | go | drive | get) [yourself] [on] [over] (here | back [here] [to me])"
+        " | (come | go | return | head) [back] [to] where ((i am | we are) [sitting | standing | lying] | you (started"
+        " | came from)) | over here | here to me | to me | this way | come | home | back [here | to me | home]"
+        " | return [home | here | to (start | me | base)] | (come | go | drive) [back] home",
+        heard="go home | come (here | back)",
     ),
-    Wording(
-        "come_back", "(come | go | return | head) [back] [to] where ((i am | we are) [sitting | standing | lying] | "
-                     "you started | you came from)",
-    ),
-    Wording("come_back", "over here | here to me | to me | this way") ,
-    Wording("come_back", "return [home | here | to (start | me | base)] | come | home | back [here | to "
-                         "me | home]"),
     Wording("put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>"),
     Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>"),
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
-    Wording("tidy", "(sort | straighten) <spot> [out | up] | (clean | clear) <spot> off | empty <spot>"),
-    Wording("tidy", "make [some | a bit of | a little] (space | room) (on | in) <spot>"),
-    Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"),
     Wording(
         "tidy",
-        "(clean | clear | take | get | remove) (everything | all of it | it all) (off | from) <spot>",
+        "(sort | straighten) <spot> [out | up] | (clean | clear) <spot> off | empty <spot>"
+        " | make [some | a bit of | a little] (space | room) (on | in) <spot>"
+        " | give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"
+        " | (clean | clear | take | get | remove) (everything | all of it | it all) (off | from) <spot>",
     ),
     Wording(
         "go", "go [over | back | along] (to | into | in | near | towards) <spot>", heard="go [back] to [the] <place>",
@@ -211,18 +193,17 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>"),
     Wording("leave", "(get | go | come) out of <spot> | (vacate | exit) <spot> | leave <spot> | (get | go) (out | "
                      "away)"),
-    Wording("go", "(approach | look at | head for | make for | set off for) <spot>"),
     Wording(
         "go",
-        f"(go | {GO}) [over | back | up] to (where | the (room | place | table | spot) where) <spot> (is | are | "
-        f"stands | lies)"
-        f" | ([go [and]] stand | go | {GO}) (next to | beside | in front of | up to | over to | by | close to) <spot>"
-        " | (park | place | put | position | station | move | bring | drive) yourself [over | back]"
-        " (to | into | in | at | on | by | near | next to | beside | in front of) <spot>",
+        "(approach | look at | head for | make for | set off for) <spot>"
+        " | (i | we) (need | want) you (in | at | by) <spot>"
+        f" | (go | {GO}) [over | back | up] to (where | the (room | place | table | spot) where) <spot> (is | are"
+        f" | stands | lies) | ([go [and]] stand | go | {GO}) (next to | beside | in front of | up to | over to | by"
+        " | close to) <spot> | (park | place | put | position | station | move | bring | drive | get | take) yourself"
+        " [over | back] (to | into | in | at | on | by | near | next to | beside | in front of) <spot>"
+        " | make your way [over | back] (to | into) <spot>"
+        " | (show | lead | guide | accompany | take) (me | us) [the way] to <spot>",
     ),
-    Wording("go", "(i | we) (need | want) you (in | at | by) <spot>"),
-    Wording("go", "(show | lead | guide | accompany | take) (me | us) [the way] to <spot>"),
-    Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>"),
     *MOVING,
     # What is said beside a command.
     Wording(

@@ -3,7 +3,7 @@
 import pytest
 
 from common.household import load_household
-from services.brain.language.dialogue import chosen, corrected, reply
+from services.brain.language.dialogue import answered, chosen, corrected, reply
 
 SCENE = load_household("apartment")
 
@@ -39,5 +39,14 @@ def test_a_choice_is_the_one_that_the_words_single_out() -> None:
     assert chosen("the red one", options) == "red mug"
     assert chosen("blue", options) == "blue mug"
     assert chosen("the second one please", options) == "red mug"
+    three = ["red mug", "blue mug", "white mug"]
+    assert chosen("not the red and not the white", three) == chosen("neither red nor white", three) == "blue mug"
     assert chosen("the mug", options) is None
     assert chosen("the green one", options) is None
+
+
+def test_a_name_alone_answers_what_a_suggestion_is_to_be_done_with() -> None:
+    assert answered("bring me the spoon", "spatula", SCENE) == "bring me the spatula"
+    assert answered("bring me the spoon", "the blue cup", SCENE) == "bring me the blue cup"
+    for sentence in ("bring me the apple", "where is the apple", "i am fine thanks a lot"):
+        assert answered("bring me the spoon", sentence, SCENE) == sentence

@@ -147,6 +147,9 @@ def test_the_judge_of_sentences_can_say_no() -> None:
         ("tidy the desk once you have fetched the apple", ["fetch the apple", "tidy the desk"]),
         ("if there is nothing on the desk bring me the mug", ["if the desk is empty", "bring me the mug"]),
         ("bring me a mug or a can", ["bring me a mug or a can"]),
+        ("once the apple is on the desk come back", ["put the apple on the desk", "come back"]),
+        ("bring me a mug but leave the red mug alone", ["bring me a mug except the red mug"]),
+        ("bring me the can. no, scratch that. the mug", ["bring me the mug"]),
     ],
 )
 def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
@@ -186,6 +189,20 @@ def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
         ("-", "what does it say on the soup", ["say"]),
         ("-", "what is written on the red mug", ["say"]),
         ("last:bring me the apple", "leave the vitamin box where it is", []),
+        ("-", "put the apple where the ball is and the ball where the apple is",
+         ["find apple", "grasp apple", "place apple", "find red ball", "grasp red ball", "place red ball"]),
+        ("-", "bring me the phone charger, the black one",
+         ["find black phone charger", "grasp black phone charger", "return", "release"]),
+        ("-", "fetch the dog's lead", ["find dog's lead", "grasp dog's lead", "return", "release"]),
+        ("-", "got any cans on the counter", ["say"]),
+        ("-", "after you put the apple on the desk, tell me how many mugs there are",
+         ["find apple", "grasp apple", "place apple", "say"]),
+        ("-", "leave the white mug alone and bring me the apple", ["find apple", "grasp apple", "return", "release"]),
+        ("-", "trundle along to the study", ["navigate study"]),
+        ("-", "make a cake on the counter", []),
+        ("-", "don't move for ten seconds", ["wait"]),
+        ("held:apple", "put what you're holding on the desk", ["place apple"]),
+        ("which:red mug|blue mug|white mug", "not the red and not the white", []),
         ("-", "if there is anything on the desk put it on the counter",
          ["find white mug", "grasp white mug", "place white mug", "find orange box", "grasp orange box",
           "place orange box"]),
@@ -220,6 +237,13 @@ def test_a_name_that_only_sounds_like_a_known_one_is_asked_about(said: str, asks
 def test_a_colour_that_only_sounds_like_a_known_one_and_a_wrong_plural_are_understood() -> None:
     assert planned("bring me the blew bottle").steps == planned("bring me the blue bottle").steps != []
     assert planned("put the apple on the desks").steps == planned("put the apple on the desk").steps != []
+
+
+def test_that_there_is_none_is_said_in_good_grammar() -> None:
+    assert [s.text for s in planned("is there anything to eat on the counter").steps] == [
+        "No, I see nothing to eat on the counter."
+    ]
+    assert planned("is there a mug on the dresser").steps[-1].text == "No, I see no mug on the dresser."
 
 
 def test_what_names_nothing_replaces_nothing() -> None:
@@ -273,6 +297,8 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
         ("wait for me in the kitchen", "queue", "wait for me in the kitchen"),
         ("do not bring it to me, put it on the desk", "replace", "do not bring it to me, put it on the desk"),
         ("instead of the can bring the mug", "replace", "bring the mug"),
+        ("forget the mug, bring me the can", "replace", "bring me the can"),
+        ("remind me what I asked you for", "aside", "remind me what I asked you for"),
         ("hurry up", "encouragement", "hurry up"),
         ("i meant the toy box", "replace", "i meant the toy box"),
         ("make it the kitchen table instead", "replace", "make it the kitchen table"),

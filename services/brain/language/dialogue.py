@@ -12,7 +12,7 @@ from common.language.contrasts import with_qualities
 from common.language.discourse import commands
 from common.language.exchange import PREPOSITIONS, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
-from common.language.meaning import asks_for
+from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.politeness import without_politeness
@@ -40,6 +40,8 @@ _CONTRAST = re.compile(r"^(?P<right>(?!not\b).+?),? (?:and |but )?not (?P<wrong>
 _SAID = re.compile(r"\s+i (?:said|meant)$")
 
 
+LONGEST_NAME = 4
+"""Fewest words of an answer that may be a sentence of its own (chosen)."""
 BESIDE = 0.6
 """Farthest an object is "next to" another [m] (chosen: both within one reach)."""
 
@@ -84,6 +86,17 @@ def corrected(command: str, correction: str, household: Household) -> str:
     return exchanged or correction
 
 
+def answered(suggestion: str, answer: str, household: Household) -> str:
+    """The command that an answer to a suggested one comes to: with another thing or place, or a command of its own.
+
+    A name alone, `spatula`, is of what the suggestion is to be done with.
+    """
+    words = answer.split()
+    names = len(words) < LONGEST_NAME and not _is_command(answer) and not is_question(answer)
+    begins = words[:1] and words[0] in DETERMINERS | PREPOSITIONS
+    return corrected(suggestion, answer, household) if words and (begins or names) else answer
+
+
 def _with_object(correction: str, command: str) -> str:
     """`put it on the counter` after a question about `put the apple on the desk` speaks of the apple."""
     words = normalise(command).split()
@@ -117,17 +130,14 @@ def chosen(
         return options[words == {"latter"}]
     if "last" in words and words <= {"last"}:
         return options[-1]
-    if found := re.match(r"neither (?:the )?(\w+) nor (?:the )?(\w+)", bare):
-        left = [o for o in options if not {found[1], found[2]} & set(o.split())]
-        return left[0] if len(left) == 1 else None
     if words and (words <= WHICH.keys()) and (extreme := _extreme(WHICH[next(iter(words))], options, known)):
         return extreme
-    if " not " in bare:
-        bare = f"not {bare.rpartition(' not ')[2]}"
-        words = set(bare.split()) - _NO_NAME
-    if bare.startswith("not "):
-        left = [o for o in options if not words - {"not"} <= set(o.split())]
-        return left[0] if len(left) == 1 and words - {"not"} else None
+    bare = re.sub(r"\bneither (.+) nor ", r"not \1 not ", bare)
+    if "not" in bare.split():
+        parts = (set(part.split()) - _NO_NAME - {"and", "or", "nor"} for part in bare.split("not")[1:])
+        excluded = [part for part in parts if part]
+        left = [o for o in options if not any(part <= set(o.split()) for part in excluded)]
+        return left[0] if len(left) == 1 and excluded else None
     printed = {o.label: {w for text in (o.text, *o.names) for w in normalise(text).split()} for o in known}
     matching = [o for o in options if words and words <= set(o.split()) | printed.get(o, set())]
     if not matching and household is not None:

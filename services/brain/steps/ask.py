@@ -8,7 +8,7 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topic import Topic
-from services.brain.language.dialogue import chosen, corrected, reply
+from services.brain.language.dialogue import answered, chosen, corrected, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
@@ -181,7 +181,9 @@ class HearMeaning(HearAnswer):
         if kind == "no":
             planning.rejected = m.RejectedPlan(steps=[], reason=planning.rejected.reason if planning.rejected else "")
         else:
-            mission.command = planning.suggestion if kind == "yes" else rest
+            mission.command = (
+                planning.suggestion if kind == "yes" else answered(planning.suggestion, rest, self.ctx.io.household)
+            )
             planning.rejected = None
         planning.suggestion = ""
         return Status.SUCCESS

@@ -66,7 +66,9 @@ def _all_meant(builder: PlanBuilder, slots: Slots) -> list[Referent]:
 
 
 def number(builder: PlanBuilder, slots: Slots) -> None:
-    not_after_moving(builder)
+    """How many of a kind are known; a count of all of them is the same after some have been moved."""
+    if "spot" in slots:
+        not_after_moving(builder)
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     phrase = read(words, builder.vocabulary)
     if not isinstance(phrase, Phrase):

@@ -7,6 +7,7 @@ from common.language.normalise import enumeration, without_determiners
 from common.language.pattern import Slots
 from common.messages import PlanStep
 from services.planner.commands.looking import things_at
+from services.planner.commands.telling import none_of
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting, unknown
@@ -63,7 +64,6 @@ def _look_into(builder: PlanBuilder, slots: Slots) -> tuple[list[BelievedObject]
     phrase = read(words, builder.vocabulary)
     if not isinstance(phrase, Phrase):
         raise unknown(builder, words, phrase)
-    name = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     if phrase.relation in ("on", "near") and builder.vocabulary.spot(phrase.anchor):
         place, known, surfaces = things_at(builder, phrase.anchor)
         builder.spot = place
@@ -72,8 +72,8 @@ def _look_into(builder: PlanBuilder, slots: Slots) -> tuple[list[BelievedObject]
         if not there:
             builder.look_at(surfaces)
         where = f"{'in' if place.receptacle is None or place.receptacle.depth else 'on'} the {place.name}"
-        return there, f"no {name} {where}"
+        return there, f"{none_of(phrase)} {where}"
     meant = [m.object for m in referents(builder, words)]
     if not any(t.seen for t in meant):
         builder.search_first([PlanStep(action="find", object=meant[0].label)])
-    return [t for t in meant if t.seen], f"no {name}"
+    return [t for t in meant if t.seen], none_of(phrase)

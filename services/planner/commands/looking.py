@@ -5,7 +5,7 @@ from common.language.normalise import Words, enumeration
 from common.language.pattern import Slots
 from common.messages import AROUND, PlanStep
 from services.planner.commands import answers
-from services.planner.commands.telling import a, be, inventory, not_after_moving, told
+from services.planner.commands.telling import a, be, inventory, none_of, not_after_moving, told
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import PlanBuilder, Refusal
@@ -107,7 +107,7 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
     if there:
         builder.say(f"Yes, there {be(there)} {enumeration([a(t) for t in there])} {at}.")
     else:
-        builder.say(f"No, I see no {phrase.singular or phrase.noun} {at}.")
+        builder.say(f"No, I see {none_of(phrase)} {at}.")
     builder.last = there
 
 
@@ -121,7 +121,7 @@ def exists(builder: PlanBuilder, slots: Slots) -> None:
             check(builder, slots)
             return
     if isinstance(phrase, Phrase) and phrase.sense.new and phrase.any_one and not phrase.relation:
-        builder.say(f"I have seen no {phrase.noun} so far.")
+        builder.say(f"I have seen {none_of(phrase)} so far.")
         return
     answers.where(builder, slots)
 

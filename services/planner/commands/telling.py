@@ -1,6 +1,7 @@
 """How things, and where they are, are named in an answer. Pure."""
 
 from common.language.normalise import enumeration, indefinite
+from services.planner.grammar.phrases import Phrase
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.world import BelievedObject
@@ -37,6 +38,12 @@ def told(there: list[BelievedObject], place: Spot) -> str:
 def not_after_moving(builder: PlanBuilder) -> None:
     if builder.moved:
         raise Refusal("I can only tell you that when I am there, so ask me again then")
+
+
+def none_of(phrase: Phrase) -> str:
+    """`no red mug`, `nothing to eat`: how to say that there is none of what was asked for."""
+    name = " ".join((*phrase.colours, phrase.singular or phrase.noun))
+    return f"nothing{name[8:]}" if name.startswith("anything") else f"no {name.removeprefix('any ')}"
 
 
 def a(item: BelievedObject) -> str:

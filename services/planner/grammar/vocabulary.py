@@ -164,8 +164,8 @@ class Vocabulary:
             words, named = (words[0], *words[2:]), words[2:]  # a can of tuna
         elif words[-1] in self.kinds:
             named = words[:-1] or words  # the tuna can
-        if not words or (NO_NOUN - self.kinds) & set(named) or is_abstract(words):
-            return False
+        if not words or (NO_NOUN - self.kinds) & set(named) or (is_abstract(words) and "'s" not in " ".join(words)):
+            return False  # the dog's lead
         acts = words[-1].endswith(("ed", "kept")) or self._commands(infinitive(words[-1], COMMANDING))
         if acts or any(
             len(words) > b - a > 1 and self.spot(words[a:b])
