@@ -63,3 +63,20 @@ def test_a_mission_that_knocked_something_over_is_not_called_done(fell: bool) ->
     assert ("COMPLETED" in bench.states()) is not fell
     if fell:
         bench.until(lambda: "the yellow can fell over" in bench.texts(SPEECH)[-1])
+
+
+@pytest.mark.parametrize(("beside", "late", "mistaken"), [(0.05, True, True), (0.3, True, False), (0.05, False, False)])
+def test_a_thing_found_again_where_it_was_taken_from_was_not_what_the_hand_put_down(
+    beside: float, late: bool, mistaken: bool
+) -> None:
+    bench = brought()
+    context = bench.brain.context
+    item, found = next(iter(context.mission.search.found.items()))
+    x, y, z = found.position
+    context.mission.delivery.absent = {"red mug 1": ((x + beside, y, z), bench.now)}
+    again = msgspec.structs.replace(found, seen_at=bench.now + (1.0 if late else -1.0))
+    context.mission.search.found[item] = again
+    look(bench, 2)
+    last = ended(bench)
+    assert last.outcome == ("failed" if mistaken else "delivered")
+    assert ("TOOK_ANOTHER" in last.reason) is mistaken

@@ -18,7 +18,7 @@ from services.brain.steps.home import tell_home
 from services.brain.steps.identify import ask_identity, survey
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Navigate, Release
-from services.brain.steps.verify import is_misplaced, nothing_fell, verify_placement
+from services.brain.steps.verify import is_misplaced, verify_placement, with_care
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 
@@ -135,7 +135,7 @@ class Complete(Leaf):
             unsure = f"I am not sure that I brought the {task.item}."
             ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken=unsure))
             return Status.FAILURE
-        if not nothing_fell(ctx):
+        if not with_care(ctx):
             return Status.FAILURE
         did = {"fetch": "", "tell": "kept what was told"}.get(task.kind, "back at the start")
         ctx.end_mission("delivered", did)

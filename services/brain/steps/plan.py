@@ -14,7 +14,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.begin import take_command
 from services.brain.steps.leaf import Leaf, SendGoal
-from services.brain.steps.verify import nothing_fell
+from services.brain.steps.verify import with_care
 
 
 class AwaitCommand(Leaf):
@@ -101,7 +101,7 @@ class CompleteWithEvidence(Leaf):
         if (grasps and not done.grabbed) or (lets_go and not done.released):
             ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
             return Status.FAILURE
-        if not nothing_fell(ctx):
+        if not with_care(ctx):
             return Status.FAILURE
         detail = "; ".join(
             [

@@ -24,6 +24,9 @@ MISPLACED_CODES = ("NOT_SEEN", "MISPLACED", "TOPPLED")
 """Codes of a look that shows an object not where, or not as, it belongs."""
 LOOKS = 2
 """Pictures in a row that must show a fault before it is believed; each costs a settle and a second or two."""
+SAME_SPOT = 0.07
+"""Distance [m] within which a thing stands where another was believed to be taken from. Chosen: fingers that close on
+something else push it aside by some cm."""
 ASIDE = 0.4
 """rad by which the base turns before the second look for an object that is not to be seen: the folded arm hides some
 0.2 rad of the head camera's picture, and turns with the base."""
@@ -146,21 +149,39 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
         mission.delivery.checked = [*mission.delivery.checked, finding.evidence]
         return Status.SUCCESS
     mission.delivery.released = False
+    taken = next((found.position for found in mission.search.found.values() if found.label == label), None)
+    if finding.fault == "NOT_SEEN" and taken is not None:
+        mission.delivery.absent[label] = taken, ctx.gripper.put_down.get(label, ctx.now)
     spoken = f"I did not put down the {label} well: {finding.words}."
     ctx.record_failure(Failure("RELEASING", finding.fault, finding.evidence, spoken))
     return Status.FAILURE
 
 
-def nothing_fell(ctx: Context) -> bool:
-    """True unless perception has seen something fall that stood near the arm at work: recorded as KNOCKED_OVER."""
+def with_care(ctx: Context) -> bool:
+    """True unless something fell near the arm at work, or was taken for what was asked for: the failure is recorded."""
     mission = ctx.mission
     handled = {found.label for found in mission.search.found.values()} | {mission.delivery.put_down, mission.task.label}
-    fallen = knocked_over(mission.delivery.around, ctx.objects, handled)
-    if not fallen:
-        return True
-    what = " and ".join(fallen)
+    if fallen := knocked_over(mission.delivery.around, ctx.objects, handled):
+        return _careless(ctx, "KNOCKED_OVER", " and ".join(fallen))
+    if taken := _mistaken(ctx):
+        return _careless(ctx, "TOOK_ANOTHER", f"I took something else for the {taken} first and put it down")
+    return True
+
+
+def _mistaken(ctx: Context) -> str:
+    """The label of an object that was found again where it was taken from, after what was put down in its name was not
+    to be seen: that was something else; "" if there is none.
+    """
+    poses = ctx.mission.search.found.values()
+    for label, (spot, when) in ctx.mission.delivery.absent.items():
+        if any(pose.seen_at > when and math.dist(pose.position[:2], spot[:2]) < SAME_SPOT for pose in poses):
+            return label
+    return ""
+
+
+def _careless(ctx: Context, code: str, what: str) -> bool:
     spoken = f"I did what you asked for, but not with care: {what}. I am sorry."
-    ctx.record_failure(Failure("COMPLETED", "KNOCKED_OVER", "; ".join([*mission.delivery.checked, what]), spoken))
+    ctx.record_failure(Failure("COMPLETED", code, "; ".join([*ctx.mission.delivery.checked, what]), spoken))
     return False
 
 
