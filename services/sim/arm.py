@@ -15,6 +15,10 @@ less."""
 SPEED, ACCELERATION = np.array([1.39] * 4 + [1.22] * 3), np.array([5.2] * 4 + [10.0] * 3)
 """What the joints (7,) of a Kinova Gen3 can do [rad/s, rad/s^2] (user guide): so set-points that come late, or all at
 once, are caught up with."""
+HASTE, LEAST, FADES = 1.0, 0.1, 0.9
+"""How much faster than its stream the arm catches up with it, as a share of the stream's speed, and at least [rad/s];
+share of the speed that is remembered from one set-point to the next. Chosen: something in the hand that goes down at 6
+cm/s, so that it may meet its surface, meets it at 12 at the most."""
 LATE = 1.5
 """Periods without a set-point [count] from which the next one is late."""
 Array = NDArray[np.float64]
@@ -24,7 +28,8 @@ class ArmDriver:
     """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
     that is late, as far as `SPEED` and `ACCELERATION` allow; `limits` lowest and highest angles.
 
-    Behind a stream it catches up no faster than it can brake to the stream's own speed.
+    Behind a stream it catches up no faster than it can brake to the stream's own speed, nor than twice that speed: what
+    is told to go slowly goes slowly.
     """
 
     def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
@@ -32,6 +37,7 @@ class ArmDriver:
         self._position, self._goal = position.copy(), position.copy()
         self._velocity: Array = np.zeros(7)
         self._stream: Array = np.zeros(7)
+        self._pace: Array = np.zeros(7)
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
     def follow(self, position: list[float], period: float, now: float, actual: Array) -> str:
@@ -49,6 +55,7 @@ class ArmDriver:
         # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         self._left = gap if LATE * period < gap < self._timeout else period
         self._stream = (goal - self._goal) / self._left if gap < self._timeout else np.zeros(7)
+        self._pace = np.maximum(np.abs(self._stream), FADES * self._pace)
         self._goal, self._heard = goal, now
         return ""
 
@@ -64,7 +71,7 @@ class ArmDriver:
         way = self._goal - self._position
         if self._left > 0:
             # Half of the acceleration brakes it to the speed of the stream, which may brake with the other half.
-            room = np.sqrt(ACCELERATION * np.abs(way))
+            room = np.minimum(np.sqrt(ACCELERATION * np.abs(way)), HASTE * self._pace + LEAST)
             wanted = np.clip(way / max(self._left, dt), self._stream - room, self._stream + room)
         else:
             # Nothing more was said: it comes to rest there.

@@ -98,7 +98,7 @@ def test_a_mission_across_two_machines_outlives_a_cut_cable(tmp_path: Path, monk
         common = {**SETTINGS, "TIDYBOT_STATE_DIR": str(tmp_path)}
         at_home = {**common, "TIDYBOT_KEYS": str(keys), "TIDYBOT_CONNECT": "tls/127.0.0.1:7447"}
         # Nobody waits for anybody here: at full speed a busy machine is late with the arm's set-points.
-        at_home["TIDYBOT__SIM__SPEED"] = "0.5"
+        at_home["TIDYBOT__SIM__SPEED"] = "0.3"
         away = {**common, "TIDYBOT_KEYS": str(tmp_path / "two"), "TIDYBOT_CONNECT": f"tls/{one.address}:7447"}
         one.start("services.router", "--listen", "tls/0.0.0.0:7447", label="router", TIDYBOT_KEYS=str(keys))
         for name in here[1:]:

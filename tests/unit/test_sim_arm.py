@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.sim.arm import ACCELERATION, BEGIN, SPEED, ArmDriver
+from services.sim.arm import ACCELERATION, BEGIN, LEAST, SPEED, ArmDriver
 
 DT, PERIOD = 0.01, 0.02
 WIDE = np.full(7, -3.0), np.full(7, 3.0)
@@ -79,3 +79,18 @@ def test_behind_its_stream_it_catches_up_without_passing_it(behind: float, speed
             at = driver.advance(n * PERIOD + k * dt, dt)
             ahead = max(ahead, float((at - goal).max()))
     assert ahead < 0.01 and at == pytest.approx(goal, abs=1e-3)
+
+
+def test_a_slow_stream_is_caught_up_with_slowly() -> None:
+    """What is set down comes to its surface no faster than twice as fast as it was told, however late it is."""
+    slow = 0.12
+    driver, seen = ArmDriver(np.zeros(7), 0.25, WIDE), [0.0]
+    for tick in range(200):
+        now = tick * DT
+        if tick % 2 == 0 and not 50 <= tick < 70:  # for 0.2 s nothing comes, then all at once
+            first = 50 if tick == 70 else tick
+            for n in range(first, tick + 1, 2):
+                assert not driver.follow([slow * (n + 2) * DT] * 7, PERIOD, now, AT)
+        seen.append(float(driver.advance(now, DT)[0]))
+    speed = np.diff(seen) / DT
+    assert speed.max() <= 2 * slow + LEAST + 1e-9 and seen[-1] == pytest.approx(slow * 2.0, abs=0.01)
