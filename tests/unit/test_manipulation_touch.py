@@ -27,11 +27,12 @@ from services.manipulation.arm.touch import (
 from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.grasp_executor import close
 from services.manipulation.execution.place_executor import lower
-from services.manipulation.execution.robot import DT, Failure, Steps, go_home
+from services.manipulation.execution.robot import DT, Failure, Robot, Steps, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, STANDING, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.motion_planner import Planner
 from services.manipulation.planning.plan_place import PlacePlan
 from services.manipulation.planning.straight_grab import RESERVE, with_reserve
 from services.sim.model import own
@@ -126,7 +127,8 @@ def test_a_guarded_motion_lets_go_of_its_set_point_unless_it_would_fall(way: Way
     assert bool(left.any()) == (way == "up")
 
 
-def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() -> None:
+def reaching() -> tuple[Arm, Robot, Planner, Pose, np.ndarray]:
+    """An arm and what moves it, and a pose of the hand above a table with the joints (7,) for it."""
     node = Arm()
     node.step(1.0)
     robot = node.service._robot
@@ -134,6 +136,11 @@ def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() ->
     planner, above = robot.planner, Pose(np.array([0.55, 0.0, 0.6]), approach_rotation(0.0, np.pi / 2))
     top = planner.ik.solve(above, seeds(planner.arm, above, planner.arm.home))
     assert top is not None
+    return node, robot, planner, above, top
+
+
+def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() -> None:
+    node, robot, planner, above, top = reaching()
     down = planner.straight(top, above, above.moved(np.array([0.0, 0.0, -0.12])))
     assert down is not None
     robot.joints = top
@@ -150,13 +157,7 @@ def test_the_hand_opens_where_it_is_felt_to_stand_or_is_on_the_surface_itself_an
     surface: float, grounded: bool, ends: bool
 ) -> None:
     """`surface`: how far [m] below the end of the way down what is held meets it."""
-    node = Arm()
-    node.step(1.0)
-    robot = node.service._robot
-    assert robot.planner is not None
-    planner, above = robot.planner, Pose(np.array([0.55, 0.0, 0.6]), approach_rotation(0.0, np.pi / 2))
-    top = planner.ik.solve(above, seeds(planner.arm, above, planner.arm.home))
-    assert top is not None
+    node, robot, planner, above, top = reaching()
     end = above.moved(np.array([0.0, 0.0, -0.08]))
     down = planner.straight(top, above, end)
     assert down is not None

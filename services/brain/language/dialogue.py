@@ -40,8 +40,8 @@ _CONTRAST = re.compile(r"^(?P<right>(?!not\b).+?),? (?:and |but )?not (?P<wrong>
 _SAID = re.compile(r"\s+i (?:said|meant)$")
 
 
-LONGEST_NAME = 4
-"""Fewest words of an answer that may be a sentence of its own (chosen)."""
+LONGEST_NAME = 3
+"""Most words of an answer that is a name alone and no sentence of its own (chosen)."""
 BESIDE = 0.6
 """Farthest an object is "next to" another [m] (chosen: both within one reach)."""
 
@@ -92,7 +92,7 @@ def answered(suggestion: str, answer: str, household: Household) -> str:
     A name alone, `spatula`, is of what the suggestion is to be done with.
     """
     words = answer.split()
-    names = len(words) < LONGEST_NAME and not _is_command(answer) and not is_question(answer)
+    names = len(words) <= LONGEST_NAME and not _is_command(answer) and not is_question(answer)
     begins = words[:1] and words[0] in DETERMINERS | PREPOSITIONS
     return corrected(suggestion, answer, household) if words and (begins or names) else answer
 

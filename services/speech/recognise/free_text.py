@@ -44,7 +44,7 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
     sentences that fit as badly is not, nor how a sentence that breaks off might go on.
     """
     found = replace(found, text=without_wake(found.text, config.wake))
-    free = without_wake(normalise(found.free, ",").strip(" ,"), config.wake).strip(" ,")
+    free = _plain(found.free, config)
     if found.verdict == "accept":
         heard = without_wake(normalise(found.free), config.wake)
         if not found.text or expand(heard) == expand(found.text) or asks_for(found.text, "stop", "cancel", "yes", "no"):
@@ -75,8 +75,12 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
 
 def cost(text: str, names: Container[str], config: SpeechConfig) -> float:
     """Cost of a transcription before anything was heard, a negative log-probability."""
-    plain = without_wake(normalise(text, ",").strip(" ,"), config.wake).strip(" ,")
-    return COSTS[understood(plain, names)]
+    return COSTS[understood(_plain(text, config), names)]
+
+
+def _plain(text: str, config: SpeechConfig) -> str:
+    """A transcription in normalised words with their commas, without the wake word."""
+    return without_wake(normalise(text, ",").strip(" ,"), config.wake).strip(" ,")
 
 
 def _breaks_off(free: str, found: Recognition) -> bool:
