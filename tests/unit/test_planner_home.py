@@ -82,3 +82,13 @@ def test_where_things_usually_are_and_were_last() -> None:
     last = planned("where did you last see my keys")
     assert last.startswith("say I last saw the keys on the kitchen table") and last.endswith("12 hours ago.")
     assert "breakfast bar" in planned("where did you last see the red mug")
+
+
+@pytest.mark.parametrize("things", ["green ball", "blue mug", "books", "keys on the study shelf"])
+def test_where_it_was_last_seen_is_answered_without_a_look(things: str) -> None:
+    known = world()
+    asked = f"where did you last see the {things}"
+    found = plan(asked, known, PlannerConfig(), done=[])
+    assert {s.action for s in found.steps} <= {"say"} and not found.again
+    assert found.steps or found.detail
+    assert plan("where is the green ball", world(), PlannerConfig(), done=[]).again

@@ -24,23 +24,49 @@ MAX_BESIDE = 3
 def where(builder: PlanBuilder, slots: Slots) -> None:
     """Where something is; what nobody has seen is looked for."""
     phrase = read(slots["thing"], builder.vocabulary)
-    named = isinstance(phrase, Phrase) or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS
-    for meant in _all_meant(builder, slots) if named else ():
-        item = meant.object
-        if item.held:
-            builder.say(f"The {item.label} is in my hand.")
-        elif item.seen and (item.position or item.on):
-            builder.say(f"The {item.label} is {place_of(builder, item)}.")
-        else:
-            builder.search_first([PlanStep(action="find", object=item.label, text=meant.words)])
-            builder.find(item, meant.words)
-            builder.say(f"I have found the {item.label}.")
-        builder.last = [item]
-    if not named and isinstance(phrase, str):
-        if builder.vocabulary.spot(slots["thing"]):
-            _place(builder, slots)
-            return
+    for meant in _meant(builder, slots, phrase):
+        if not _told(builder, meant.object):
+            builder.search_first([PlanStep(action="find", object=meant.object.label, text=meant.words)])
+            builder.find(meant.object, meant.words)
+            builder.say(f"I have found the {meant.object.label}.")
+        builder.last = [meant.object]
+
+
+def remembered(builder: PlanBuilder, slots: Slots) -> bool:
+    """Say where something is known to be now, without a look for it; False where that is not known."""
+    memory = builder.fork()
+    memory.done = None
+    phrase = read(slots["thing"], builder.vocabulary)
+    meant = [m.object for m in _meant(memory, slots, phrase)]
+    told = [item for item in meant if _told(memory, item)]
+    builder.adopt(memory)
+    builder.last = told or builder.last
+    return bool(told)
+
+
+def _meant(builder: PlanBuilder, slots: Slots, phrase: Phrase | str) -> list[Referent]:
+    """The things that are asked about; none, and the answer is given, where it is a place.
+
+    Raises:
+        Refusal: the words name nothing.
+    """
+    if isinstance(phrase, Phrase) or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS:
+        return _all_meant(builder, slots)
+    if not builder.vocabulary.spot(slots["thing"]):
         raise unknown(builder, slots["thing"], phrase)
+    _place(builder, slots)
+    return []
+
+
+def _told(builder: PlanBuilder, item: BelievedObject) -> bool:
+    """Say where it is; False where nobody has seen it."""
+    if item.held:
+        builder.say(f"The {item.label} is in my hand.")
+    elif item.seen and (item.position or item.on):
+        builder.say(f"The {item.label} is {place_of(builder, item)}.")
+    else:
+        return False
+    return True
 
 
 def found(builder: PlanBuilder) -> None:

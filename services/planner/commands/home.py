@@ -9,7 +9,7 @@ from common.naming.part_names import kind_named
 from common.naming.words import Destination
 from common.tidy_rule import ONES, rule_about
 from common.whereabouts import ago, decayed, kind_of_phrase, of_thing
-from services.planner.commands.answers import where
+from services.planner.commands.answers import remembered
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
@@ -160,21 +160,24 @@ def _mostly(builder: PlanBuilder, found: list[Sighting], now: float) -> str:
 
 
 def last_seen(builder: PlanBuilder, slots: Slots) -> None:
-    """Where something was when it was seen last, today or days ago; what is known to be somewhere now is told so."""
+    """Where something was when it was seen last, today or days ago; what is known to be somewhere now is told so.
+
+    Nobody goes and looks: what was never seen is said to be.
+    """
     thing = _thing(builder, slots["thing"])
     found = of_thing(thing, builder.world.sightings)
-    phrase = read(slots["thing"], builder.vocabulary)
-    present = (
-        isinstance(phrase, Phrase)
-        and not phrase.sense.new
-        and any(map(fitting(builder, phrase), builder.world.objects))
-    )
-    if present or not found:
-        where(builder, slots)
+    try:
+        present = remembered(builder, slots)
+    except Refusal as refusal:
+        if isinstance(refusal, Lost) and not found:
+            raise
+        present = False
     if found:
         s = max(found, key=lambda s: s.last)
         seen = "I last saw it" if present else f"I last saw the {thing} {_place(builder, s)},"
         builder.say(f"{seen} {ago(builder.world.seen_until - s.last)}.")
+    elif not present:
+        builder.say(f"I have not seen any {thing} yet.")
 
 
 def _thing(builder: PlanBuilder, words: Words) -> str:
