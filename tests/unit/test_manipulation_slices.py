@@ -78,6 +78,20 @@ def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch:
     assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"
 
 
+def test_a_wide_pot_is_held_by_its_handles_and_one_without_is_too_wide() -> None:
+    """Turned about its axis its wall is nowhere narrow enough; a smooth one offers nothing thin and keeps its shape."""
+    wall, rings = front((0.055, 0.055), -0.035, 0.035), np.arange(0.0, 0.056, 0.006)
+    lid = [(r * math.cos(t), r * math.sin(t), 0.035) for r in rings for t in np.arange(0.0, 6.3, 0.2)]
+    grips = [(x, side * y, 0.02) for side in (-1, 1) for y in np.arange(0.058, 0.09, 0.007) for x in (-0.01, 0.0, 0.01)]
+    body = np.concatenate([wall, lid])
+    smooth = Target("thing", "jar", AT, 0.0, (0.11, 0.11, 0.07), 0.0, "round", body, 0.003, True)
+    pot = PLANNER.believed(replace(smooth, points=np.concatenate([body, grips])))
+    assert PLANNER.believed(smooth) is smooth and not any(PLANNER.candidates(smooth))
+    grasps = [grasp for stage in PLANNER.candidates(pot) for grasp in stage]
+    assert pot.family == "long" and grasps
+    assert all(math.hypot(*(grasp.pose.position - AT)[:2]) > 0.05 and grasp.width < 0.05 for grasp in grasps)
+
+
 @pytest.mark.parametrize(("kind", "above"), [("ball", False), ("toy", True)])
 def test_what_shows_its_upper_part_alone_is_taken_there_unless_it_is_a_ball(kind: str, above: bool) -> None:
     """Fingers above the equator of a ball squeeze it out."""

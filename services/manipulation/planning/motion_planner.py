@@ -72,13 +72,23 @@ class Planner:
         return np.random.default_rng(self._seed)
 
     def believed(self, target: Target) -> Target:
-        """The object with its measured shape, or as it was seen. Of what is too wide slice by slice only thin parts can
-        be held, as a teapot by its handle: then what was seen is not completed to the far side.
+        """The object with its measured shape, or as it was seen. Of what is too wide, slice by slice or all around,
+        only thin parts can be held, as a pot by its handle: then what was seen is not completed to the far side.
         """
         found = believed(target)
-        if found.family != "irregular" or len(self._on_surface(found)) >= FEWEST:
+        if found.family == "irregular":
+            return found if len(self._on_surface(found)) >= FEWEST else replace(found, shape="long")
+        if not self._nowhere_held(found):
             return found
-        return replace(found, shape="long")
+        parts = replace(found, shape="long")
+        return parts if self._on_surface(parts) else found
+
+    def _nowhere_held(self, target: Target) -> bool:
+        """Something round that stands, and was seen, goes between the fingers nowhere by its wall."""
+        wide = target.measured and target.points is not None and is_round(target)
+        if not wide or min(target.size[:2]) <= self.arm.widest or flat_and_wide(target, self.arm.widest):
+            return False
+        return not self._rules(target) and not self._on_surface(target)
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen
