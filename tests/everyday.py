@@ -9,7 +9,8 @@ from common import config
 from common.household import load_household
 from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
 from common.plan_rules import known_world, objection
-from services.brain.language.dialogue import chosen, corrected, reply
+from services.brain.language.choosing import chosen
+from services.brain.language.dialogue import corrected, reply
 from services.brain.language.interjection import interjection
 from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
@@ -95,7 +96,10 @@ def understand(sentence: Sentence) -> Understood:
             return Understood(kind, [], [])
         case "which":
             options = about.split("|")
-            label = chosen(sentence.said, options, FLAT, HOME)
+            kind = reply(sentence.said)[0]
+            label = None if kind == "cancel" else chosen(sentence.said, options, FLAT, HOME)
+            if label is None and kind in ("no", "cancel"):
+                return Understood(kind, [], [])
             return Understood(f"pick {label}", [], []) if label else Understood("", [], [], "no choice")
         case "busy":
             said = interjection(sentence.said, about)
@@ -119,7 +123,8 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
         return flat, "", History(said="x")
     done = planned(about, FLAT, "", History())
     label = next((s.object for s in done.steps if s.object), "")
-    if not label:
+    origin = next((o.on for o in FLAT if o.label == label), "")  # "" of what nobody has listed, and of a rule's things
+    if not origin and tag == "last":
         return (
             flat,
             "",
@@ -128,7 +133,6 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
                 said=" ".join(s.text for s in done.steps),
             ),
         )
-    origin = next(o.on for o in FLAT if o.label == label)
     target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
     if tag == "failed":
         spoken = f"I could not find the {label}."
@@ -204,8 +208,8 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
         return found.kind == kind and _fits(rest, sentence, found._replace(kind=""))
     if reading in ("stop()", "yes()", "no()"):
         return found.kind in {"stop()": ("stop", "cancel"), "yes()": ("yes",), "no()": ("no",)}[reading]
-    if choice := re.fullmatch(r"pick\((.+)\)", reading):
-        return found.kind == f"pick {choice[1]}"
+    if choice := re.fullmatch(r"pick\(([^()]+)\)", reading):
+        return found.kind in [f"pick {label}" for label in choice[1].split("/")]
     if reading == "return()" and found.kind == "come_back":
         return True
     if found.kind or not found.steps:

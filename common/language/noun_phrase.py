@@ -23,7 +23,8 @@ WHICH: dict[str, Which] = {
     "big": "biggest", "large": "biggest", "largest": "biggest", "bigger": "biggest", "huge": "biggest",
     "larger": "biggest", "tall": "tallest", "tallest": "tallest", "taller": "tallest", "high": "tallest",
     "short": "shortest", "shortest": "shortest", "shorter": "shortest", "tiny": "smallest",
-    "smallest": "smallest", "small": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
+    "smallest": "smallest", "small": "smallest", "littler": "smallest",
+    "littlest": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
     "second": "second", "third": "third", "last": "last", "middle": "middle", "other": "other",
     "different": "other", "another": "other",
 }  # fmt: skip

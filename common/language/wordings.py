@@ -31,7 +31,7 @@ WORDINGS: tuple[Wording, ...] = (
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
         " | [there is] no need [for (it | that)] [any more] | cancel cancel | abort abort | abort mission"
         " | never mind | nevermind | [no | nah | nope] forget [about] (it | that) | leave it [be | then] | skip it | "
-        "drop that | call it off"
+        "drop that | call it off | (forget | ignore) [that] i (asked | said (anything | that | it) | spoke)"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
         " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
         " | (i | we) (no longer | do not) (need | want) (it | that) [any more] | not (now | yet) | [maybe] (later | "
@@ -44,20 +44,26 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "yes",
-        "(yes | yeah | yep | yup) (bring | get | fetch | take | do) (it | that | them) [to me]"
-        " | (yes | yeah | yep | yup) [please | thanks | thank you | that is what i (said | meant | "
+        "(yes | yeah | yep | yup | aye) (bring | get | fetch | take | do) (it | that | them) [to me]"
+        " | (yes | yeah | yep | yup | aye) [please | thanks | thank you | that is what i (said | meant | "
         "want) | i did | it is | that is right | "
         "please do | do | do that | go for it | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine | that is what i (said | meant | want)"
+        " | [(sure | indeed)] (i | we) (did | do) [indeed | [just] say that] | (too | quite | dead) right"
+        " | (sure | yes) did | aye [aye] | mm hm | naturally | that is what i am after"
+        " | that is [exactly] what i (was after | asked for)"
         " | go [on | for it] | bang on | spot on | you [have] got it | right you are | you [have] got (it | that) "
         "right | precisely | you bet | uh huh | mhm | by all "
         "means | please do | right | that is (it | the one) | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
-        "no", "no no [no] | (goodness | heavens | gosh | god | hell | dear me | certainly) (no | not) | (no | nope "
+        "no", "no no [no] | (neither | none) [[one] of (them | those | these | the two)] [thanks "
+        "| please] | not (either | any) "
+        "[of (them | those | these | the two)] | (goodness | heavens | gosh | god | hell "
+        "| dear me | certainly) (no | not) | (no | nope "
         "| nah) [thanks | i did not | that is wrong] | [that is] "
               "(wrong | incorrect) | negative "
               "| not (that | really | at all) | no way"

@@ -3,7 +3,9 @@
 import pytest
 
 from common.household import load_household
-from services.brain.language.dialogue import answered, chosen, corrected, reply
+from services.brain.language.choosing import chosen
+from services.brain.language.dialogue import answered, corrected, reply
+from tests.everyday import FLAT, HOME
 
 SCENE = load_household("apartment")
 
@@ -43,6 +45,20 @@ def test_a_choice_is_the_one_that_the_words_single_out() -> None:
     assert chosen("not the red and not the white", three) == chosen("neither red nor white", three) == "blue mug"
     assert chosen("the mug", options) is None
     assert chosen("the green one", options) is None
+
+
+def test_an_answer_chooses_by_what_only_one_of_the_options_has() -> None:
+    mugs = ["red mug", "blue mug"]
+    assert chosen("hmm the blue one looks nice today", mugs) == "blue mug"
+    assert chosen("any of them", mugs) == chosen("i don't mind", mugs) == "red mug"
+    assert chosen("did i say red? i meant blue", mugs) == "blue mug"
+    for passed_over in ("the red one is dirty", "anything but the red one", "that red thing is not a mug"):
+        assert chosen(passed_over, mugs) != "red mug"
+    assert chosen("the red or the blue", mugs) is None
+    assert chosen("the one i eat", ["apple", "red ball"], FLAT, HOME) == "apple"
+    assert chosen("well the one here in the lounge", ["bookshelf", "study shelf"], FLAT, HOME) == "bookshelf"
+    assert chosen("no the white one", mugs, FLAT, HOME) == "white mug"
+    assert reply("neither of them")[0] == "no" and reply("aye, i did, that's right")[0] == "yes"
 
 
 def test_a_name_alone_answers_what_a_suggestion_is_to_be_done_with() -> None:

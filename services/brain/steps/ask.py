@@ -8,7 +8,8 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topic import Topic
-from services.brain.language.dialogue import answered, chosen, corrected, reply
+from services.brain.language.choosing import chosen
+from services.brain.language.dialogue import answered, corrected, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
@@ -122,10 +123,11 @@ class HearChoice(HearAnswer):
     def succeed(self, result: Result) -> Status:
         mission, heard = self.ctx.mission, result.message
         assert isinstance(heard, m.SpeechResult)
-        if reply(heard.text)[0] == "cancel":
-            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
+        kind, _ = reply(heard.text)
         known = self.ctx.objects
-        label = chosen(heard.text, mission.search.options, known, self.ctx.io.household)
+        label = None if kind == "cancel" else chosen(heard.text, mission.search.options, known, self.ctx.io.household)
+        if label is None and kind in ("no", "cancel"):
+            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
         mission.search.chosen[self._item] = label
