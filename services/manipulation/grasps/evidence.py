@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, cKDTree
 
 from services.manipulation.arm.arm_model import Array
@@ -27,8 +28,8 @@ BESIDE, BEFORE = 0.006, 0.045
 """How far [m] beside the pads, and before their middle, what is seen counts as between them: points lie 7 mm apart, and
 of what the hand comes to from its seen side only the front may be seen."""
 LEAST_SEEN, SPANNED = 4, 0.3
-"""Fewest seen points between the pads, and the least share of the width that they span: of something round that is
-taken from its far side half is seen."""
+"""Fewest seen points between the pads, or of a part of its own, and the least share of the width that they span: of
+something round that is taken from its far side half is seen."""
 SLOPING = 0.25
 """Steepest surface, as a tangent, under the pads of a grasp by rule: fingers slid up a cone of 17 degrees."""
 
@@ -43,8 +44,20 @@ def explained(target: Target) -> bool:
         return False
     if target.shape in ("round", "bowl") and _is_ring(target.points, target.size):
         return False
+    return float(np.mean(_beside_shape(target))) < UNEXPLAINED
+
+
+def has_parts(target: Target) -> bool:
+    """Something of a measured object, as a handle, was seen where its completed shape has no surface."""
+    return target.measured and target.points is not None and int(_beside_shape(target).sum()) >= LEAST_SEEN
+
+
+def _beside_shape(target: Target) -> NDArray[np.bool_]:
+    """Which of the points (n,) are of something else than the completed surface."""
+    assert target.points is not None
     distance, _ = cKDTree(surface(target)).query(target.points + np.array(target.position))
-    return float(np.mean(distance > OFF)) < UNEXPLAINED
+    found: NDArray[np.bool_] = distance > OFF
+    return found
 
 
 def _is_ring(points: Array, size: tuple[float, float, float]) -> bool:

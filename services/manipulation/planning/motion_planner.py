@@ -12,7 +12,7 @@ from services.manipulation.arm.touch import Reaction
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
-from services.manipulation.grasps.evidence import as_held, believed, seen_between
+from services.manipulation.grasps.evidence import as_held, believed, has_parts, seen_between
 from services.manipulation.grasps.grasp import Grasp, candidates
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
@@ -78,15 +78,14 @@ class Planner:
         found = believed(target)
         if found.family == "irregular":
             return found if len(self._on_surface(found)) >= FEWEST else replace(found, shape="long")
-        if not self._nowhere_held(found):
+        if not self._nowhere_held(found) or not has_parts(found):
             return found
         parts = replace(found, shape="long")
         return parts if self._on_surface(parts) else found
 
     def _nowhere_held(self, target: Target) -> bool:
         """Something round that stands, and was seen, goes between the fingers nowhere by its wall."""
-        wide = target.measured and target.points is not None and is_round(target)
-        if not wide or min(target.size[:2]) <= self.arm.widest or flat_and_wide(target, self.arm.widest):
+        if not is_round(target) or min(target.size[:2]) <= self.arm.widest or flat_and_wide(target, self.arm.widest):
             return False
         return not self._rules(target) and not self._on_surface(target)
 
