@@ -10,7 +10,7 @@ from common import messages as m
 from common.floor_plan import Wall
 from common.geometry import Rectangle
 from common.household import load_household
-from services.manipulation.planning.planning_scene import GAPS, obstacles, spots
+from services.manipulation.planning.planning_scene import GAPS, bin_spots, obstacles, spots
 
 SCENE = load_household("apartment")
 TABLE = SCENE.receptacle("kitchen table")
@@ -35,6 +35,20 @@ def test_spots_lie_on_the_surface_and_clear_of_what_stands_there(near: bool) -> 
         apart = math.dist(there, anchor.position[:2])
         assert TABLE.contains(*there) and apart > 0.08 + 0.03
         assert not near or apart < 0.08 + max(GAPS) + 0.01
+
+
+def test_nothing_is_let_go_above_what_lies_in_the_bin() -> None:
+    bin_ = SCENE.receptacle("recycling bin")
+    assert bin_ is not None
+    base = (bin_.center[0] - 0.7, bin_.center[1], 0.0)
+    inside: list[m.WorldObject] = []
+    for _ in range(4):
+        x, y = bin_spots(bin_, base, inside, FORWARD)[0]
+        there = (base[0] + x, base[1] + y, 0.1)
+        assert bin_.contains(*there[:2], margin=-0.085 / 2)
+        assert all(math.dist(there[:2], o.position[:2]) > 0.07 for o in inside)
+        inside.append(msgspec.structs.replace(apple(0.0, 0.0), position=there))
+    assert math.dist(inside[0].position[:2], bin_.center[:2]) < 1e-6
 
 
 def test_the_end_of_a_wall_is_an_obstacle_as_far_as_it_closes_the_corner() -> None:

@@ -19,7 +19,7 @@ from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObjec
 from services.manipulation.planning.edge_spots import Placement, edge_spots
 from services.manipulation.planning.overhang import facing_edge
 from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place, plan_placements
-from services.manipulation.planning.planning_scene import obstacles, spots
+from services.manipulation.planning.planning_scene import bin_spots, obstacles, spots
 
 Plan = Callable[..., PlacePlan]
 """Plans a placement among the obstacles around, from joints (7,)."""
@@ -116,11 +116,12 @@ def free_spots(
     away_from: str = "",
 ) -> list[tuple[float, float]]:
     """Free points of a receptacle in the base frame for the object of that label, `footprint` [m] across."""
-    known = [o for o in robot.source.objects() if o.label != label and not r.depth]
+    known = [o for o in robot.source.objects() if o.label != label]
+    if r.depth and anchor is None:
+        return bin_spots(r, robot.base, (o for o in known if o.on == r.name), planner_of(robot).arm.forward)
     wider = [(o.size[0] + 2 * ACCESS, o.size[1] + 2 * ACCESS, o.size[2]) for o in known]
     taken = [replace(o, size=size) if o.label == away_from else o for o, size in zip(known, wider, strict=True)]
-    wide = footprint if not r.depth else max(r.size)
-    return spots(r, robot.base, wide, taken, planner_of(robot).arm.forward, anchor)
+    return spots(r, robot.base, footprint, taken, planner_of(robot).arm.forward, anchor)
 
 
 def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from common.floor_plan import FloorPlan, Receptacle
-from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, yaw_quat
+from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, to_frame, yaw_quat
 from common.kinds import laid_on_a_side
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Array, Obstacle
@@ -36,6 +36,9 @@ DIRECTIONS, GAPS = 16, (0.05, 0.08, 0.12)
 a finger and the error of a sighting at least."""
 EASY = 0.54
 """Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
+ASIDE = 0.35
+"""How far beside the middle of a bin something is let go, as a share of the way to its wall. Chosen: what is as wide as
+the hand opens clears the walls of a bin of 0.3 m, and what lies in its middle."""
 
 
 def target_of(found: WorldObject, base: Pose2, floor_plan: FloorPlan) -> Target:
@@ -154,6 +157,24 @@ def spots(
             ideal = math.hypot(bx - forward - EASY, 0.6 * by)
             grid.append((ideal, (bx, by)))
     return [spot for ideal, spot in sorted(grid) if ideal < 0.6]
+
+
+def bin_spots(r: Receptacle, base: Pose2, inside: Iterable[WorldObject], forward: float) -> list[tuple[float, float]]:
+    """Points of a bin's opening in the base frame: its middle, or first those farthest from what is `inside` already.
+
+    The arm stands `forward` [m] on the base. What is let go above something else would stand on it, out of the bin.
+    """
+    lying = [(o.position[0], o.position[1]) for o in inside]
+    u, v = (ASIDE * size / 2 for size in r.size)
+    grid = [(0.0, 0.0), *product((-u, u), (-v, v))] if lying else [(0.0, 0.0)]
+    points = [r.outline.to_map(*point) for point in grid]
+
+    def unwanted(point: tuple[float, float]) -> tuple[float, float]:
+        room = min((math.dist(point, other) for other in lying), default=0.0)
+        x, y = to_frame(base, point)
+        return -round(room, 2), math.hypot(x - forward - EASY, y)
+
+    return [to_frame(base, point) for point in sorted(points, key=unwanted)]
 
 
 def _ring_of(r: Receptacle, radius: float, beside: WorldObject | ObjectRef) -> list[tuple[float, float]]:
