@@ -6,10 +6,11 @@ from itertools import pairwise, takewhile
 import numpy as np
 import pytest
 
-from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.arm.arm_model import Obstacle, Pose
+from services.manipulation.arm.ik import seeds
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
-from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.motion_planner import NEAR, Planner, inflated
 from services.manipulation.planning.plan_place import DEEPEST, plan_place
 from services.sim.model import own
 
@@ -93,3 +94,17 @@ def test_with_a_finger_in_its_handle_a_mug_is_left_straight_back(lay: bool) -> N
     plan = plan_place(planner, held, [(0.576, 0.0)], 0.46, 0.004, [tray], planner.arm.home.copy())
     heights = [planner.arm.pose(q).position[2] for q in plan.retreat]
     assert (np.ptp(heights) < 0.005) == lay, "where nothing holds it back the hand may rise"
+
+
+def test_a_path_is_free_of_everything_by_a_margin_as_long_as_it_is_not_said_to_be_near() -> None:
+    planner = Planner(own().mjcf, 0)
+    arm, above = planner.arm, Pose(np.array([0.55, 0.0, 0.6]), approach_rotation(0.0, np.pi / 2))
+    end = planner.ik.solve(above, seeds(arm, above, arm.home))
+    assert end is not None
+    table = Obstacle((0.9, 0.0, 0.40), (0.8, 0.8, 0.3))
+    far, near = planner.up_to_near([arm.home, end], [table])
+    assert near[0] is far[-1] and near[-1] is end
+    arm.set_obstacles(inflated([table], 0.9 * NEAR), 0.0)
+    assert not any(arm.collides(a + (far[-1] - a) * s) for a in far[:1] for s in np.linspace(0, 0.95, 40))
+    assert any(arm.collides(near[0] + (end - near[0]) * s) for s in np.linspace(0, 1, 40))
+    assert planner.up_to_near([arm.home, end], []) == ([arm.home, end], [])

@@ -208,6 +208,12 @@ def test_in_free_motion_the_arm_notices_what_it_meets_beside_its_load(
     assert watching.feel(arm.home, rest + torques(arm, push))[0] == code
 
 
+def test_what_moves_slowly_notices_less(arm: ArmModel) -> None:
+    reaction, light = Reaction(arm), torques(arm, (0.0, MET + 2, 0.0))
+    codes = [watch(reaction, arm.home, np.zeros(7), False, False, most).feel(arm.home, light)[0] for most in (MET, HIT)]
+    assert codes == [BLOCKED, ""]
+
+
 def test_a_blow_on_the_elbow_shows_in_the_joints_below_it(arm: ArmModel) -> None:
     reaction = Reaction(arm)
     watching = watch(reaction, arm.home, np.zeros(7), False, False)

@@ -98,12 +98,13 @@ class Watch:
     """Ends a free motion, with BLOCKED, where the arm meets what it was planned to pass.
 
     `load` (3,) [N] is the force of the hand that carries what it holds; `weighs`: the torques tell the arm's own weight
-    too, which some drivers take off.
+    too, which some drivers take off. `most`: force [N] on the hand from which it has met something.
     """
 
     reaction: Reaction
     load: Array
     weighs: bool
+    most: float = HIT
 
     def feel(self, joints: Array, torques: Array) -> tuple[str, float]:
         """BLOCKED, or "" where the motion may go on, and the force [N] on the hand that was felt."""
@@ -113,16 +114,16 @@ class Watch:
         felt = float(np.linalg.norm(self.reaction.force(joints, extra)))
         # What hangs beside the pinch point, and swings, shows as up to a half of its weight, at half a metre.
         more = float(self.load[2]) / 2
-        met = felt > HIT + more or float(np.abs(extra).max()) > STRAIN + more / 2
+        met = felt > self.most + more or float(np.abs(extra).max()) > STRAIN + more / 2
         return (BLOCKED if met else ""), felt
 
 
-def watch(reaction: Reaction, joints: Array, torques: Array, holds: bool, weighs: bool) -> Watch:
+def watch(reaction: Reaction, joints: Array, torques: Array, holds: bool, weighs: bool, most: float = HIT) -> Watch:
     """For a motion that begins at `joints` (7,) with `torques` (7,) [Nm]; what the hand `holds` hangs on it."""
     upward = 0.0
     if holds:
         upward = float(reaction.force(joints, torques - (reaction.weight(joints) if weighs else 0.0))[2])
-    return Watch(reaction, np.array([0.0, 0.0, max(0.0, upward)]), weighs)
+    return Watch(reaction, np.array([0.0, 0.0, max(0.0, upward)]), weighs, most)
 
 
 def tells_weight(reaction: Reaction, joints: Array, torques: Array) -> bool:

@@ -78,10 +78,11 @@ class Robot:
         self._weighs: bool | None = None
 
     # --- motion
-    def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None) -> Steps[None]:
+    def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None, most: float = HIT) -> Steps[None]:
         """Stream a joint path and wait until the arm has come to rest at its end.
 
-        Without a `guard` it is watched that the arm meets nothing; off what it meets it goes back a little.
+        Without a `guard` it is watched that the arm meets nothing with more than `most` [N] on the hand; off what it
+        meets it goes back a little.
 
         Raises:
             Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
@@ -89,7 +90,7 @@ class Robot:
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
         try:
-            yield from self._stream_along(points, speed, guard or self._watch())
+            yield from self._stream_along(points, speed, guard or self._watch(most))
         except Failure as failure:
             if guard is None and failure.code == BLOCKED:
                 self.io.log.info("backing off", detail=failure.detail, phase=self.phase)
@@ -142,13 +143,13 @@ class Robot:
         """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
         return Guard(self.planner.reaction, rest, most, way) if self.planner is not None else None
 
-    def _watch(self) -> Watch | None:
+    def _watch(self, most: float) -> Watch | None:
         if self.planner is None:
             return None
         holds, reaction = self.grip.holds(), self.planner.reaction
         if self._weighs is None or not holds:
             self._weighs = tells_weight(reaction, self.joints, self.torques)
-        return watch(reaction, self.joints, self.torques, holds, self._weighs)
+        return watch(reaction, self.joints, self.torques, holds, self._weighs, most)
 
     def _check_touched(self, feeler: Guard | Watch | None) -> None:
         code, force = feeler.feel(self.joints, self.torques) if feeler is not None else ("", 0.0)

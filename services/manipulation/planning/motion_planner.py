@@ -9,7 +9,7 @@ import numpy as np
 from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.arm.ik import InverseKinematics
 from services.manipulation.arm.touch import Reaction
-from services.manipulation.arm.trajectory import connect
+from services.manipulation.arm.trajectory import connect, divided
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
 from services.manipulation.grasps.evidence import as_held, believed, has_parts, seen_between
@@ -33,6 +33,9 @@ kinematics."""
 TRANSIT_MARGINS = (0.02, 0.01, 0.005)
 """Margins [m] around obstacles and the robot's base in free motion, widest first. Chosen: from the error of a sighting
 at 2 m down to that of one at arm's length; the arm itself lags by up to .03 rad, 5 mm at the elbow."""
+NEAR = 0.05
+"""Distance [m] from what is known around up to which the arm goes slowly. Chosen: the error of localisation, 3 cm, with
+the lag of the arm and what a path moves between two collision checks."""
 # Tip and turn [rad] of the hand at the carry pose: for long objects it is turned or tips up, so that they stay clear.
 _CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
@@ -120,6 +123,11 @@ class Planner:
             if not self.arm.collides(end):
                 return
         self.arm.set_obstacles(around, 0.0)
+
+    def up_to_near(self, path: Sequence[Array], around: Sequence[Obstacle]) -> tuple[list[Array], list[Array]]:
+        """A path in two: as long as the arm keeps `NEAR` away from everything around, and the rest."""
+        self.arm.set_obstacles(inflated(around, NEAR), 0.0)
+        return divided(path, lambda q: not self.arm.collides(q))
 
     def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to a carry pose with the object in hand, from wherever the arm is.

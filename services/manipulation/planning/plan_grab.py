@@ -23,12 +23,14 @@ from services.manipulation.planning.straight_grab import Miss, Way, opening_of, 
 class GrabPlan:
     """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand.
 
+    `reach` leads to where the arm comes near something, `near` from there to the pre-grasp.
     `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of;
     `options`: the grasps that were considered; `doubt` [m]: how far off the width between the pads may be.
     """
 
     grasp: Grasp
     reach: list[Array]
+    near: list[Array]
     insert: list[Array]
     lift: list[Array]
     carry: list[Array]
@@ -116,10 +118,12 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
     arm, around, rng = planner.arm, way.around, planner.rng()
     at, back, up = lines.at, lines.back, lines.up
     arm.open_fingers()
-    planner.surround(with_object(around, target.grown(0.0)), back[-1])
+    everything = with_object(around, target.grown(0.0))
+    planner.surround(everything, back[-1])
     there = connect(arm, now, back[-1], rng)
     if there is None:
         return Miss("no path to the pre-grasp")
+    reach, near = planner.up_to_near(there, everything)
     attached = attach(target, grasp)
     arm.hold(*attached.box())
     up += over_neighbours(planner, target, grasp, around, up[-1], lines.lift)
@@ -130,7 +134,7 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
         return Miss("no path to the carry pose")
     opening, doubt = opening_of(planner, grasp, way), MEASURED + 2 * target.spread
     return GrabPlan(
-        grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around,
+        grasp, reach, near, [at, *back][::-1], [at, *up], away, attached, opening, around,
         doubt=doubt if target.measured or grasp.on_surface else 0.0,
     )  # fmt: skip
 
