@@ -11,7 +11,7 @@ from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
 from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_VERB, COMMANDING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.politeness import LONG_SPEECH, without_politeness
@@ -55,6 +55,12 @@ _ANNOUNCED = re.compile(
     re.IGNORECASE,
 )
 """What only says that an enumeration comes: `bring me two things: the mug and the can`."""
+_WHAT_IS_HELD = re.compile(
+    rf"\b(?P<verb>{A_VERB} (?:(?:me|us|down|back|away) )?)(?:what(?:ever)?|the thing|anything|everything) (?:that )?"
+    r"you(?: are|'re) (?:holding|carrying)\b",
+    re.IGNORECASE,
+)
+"""`whatever you're holding` behind a verb: it."""
 _EMPTIED = re.compile(
     r"\b(?:empty|clear|clear off|clear out) (?P<from>(?:the|my|our) \w+(?: \w+)?)[,;.]? (?:and )?"
     r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of it|the lot)(?: goes)? "
@@ -68,6 +74,7 @@ _NEXT = frozenset(
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
+    text = _WHAT_IS_HELD.sub(r"\g<verb>it", text)
     listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
     whole = without_fillers(expand(normalise(listed, ",;.!?")))
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))

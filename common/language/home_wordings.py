@@ -9,11 +9,16 @@ _ALWAYS = (
     " | in [the] future | generally)"
 )
 _BELONG = (
-    "(go | goes | (have their | has its) place | belong | belongs | live | lives | "
+    "(go | goes | (have | has) (their | its) (place | home) | stay | get put | are to (go | stay) | belong "
+    "| belongs | live | lives | "
     "(should | ought to) (go | be | live | belong) | are kept | are put | are stored"
     " | (should | must | are to) be (kept | stored))"
 )
 _MUST = "(should | must | ought to | have to | are to)"
+_HOUSE = "[in (this | our | my) (house | home | household | family | flat | place)]"
+_AGAIN = "[any (more | longer) | anymore | now]"
+_NOTE = "(remember | know | learn | note | bear in mind)"
+_TIDYING = "[(when | whenever) you (tidy | clear) [up] | when (tidying | clearing) [up]]"
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
 _THE = "[the | my | our | a]"
 
@@ -39,6 +44,10 @@ TOLD: tuple[Wording, ...] = (
         "forget_rule",
         f"(you | i | we) (do not (have | need) to | need not | no longer (have | need) to) (put | keep | store | take)"
         f" <words> {_ON} <spot> [any (more | longer)] | stop (putting | keeping | storing) <words> {_ON} <spot>"
+        f" | <words> (do not have to | do not need to | need not | no longer (have to | need to)) {_BELONG} [back]"
+        f" ({_ON} | to) <spot> {_AGAIN} | <words> no longer {_BELONG} {_ON} <spot> {_AGAIN}"
+        f" | there is no (fixed | set | special | particular) (place | home | spot) for <words> {_AGAIN}"
+        f" | stop (taking | bringing | moving) <words> to <spot> as a rule"
         f" | (no more | no | drop the | cancel the) (rule | rules) (about | for | on) <words>"
         f" | (forget | ignore) what i (said | told you) about <words>"
         f" | (forget | unlearn) (where | that) <words> {_BELONG} [{_ON} <spot>]",
@@ -51,12 +60,15 @@ TOLD: tuple[Wording, ...] = (
         f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}"
         f" | [no] <thing> {_MUST} {_ALWAYS} (go | be | live | belong | stay | be (kept | put | stored)) [back] ({_ON} "
         f"| to) <spot>"
-        f" | (remember that | note that | learn that | bear in mind that | new rule) <thing> {_BELONG} ({_ON} | to) "
-        f"<spot>",
+        f" | {_TIDYING} [and] ({_NOTE} that | new rule [that | and]) <thing> {_BELONG} ({_ON} | to) <spot>"
+        f" | new rule [that | and] <thing> {_ON} <spot>"
+        f" | {_HOUSE} (any | every | each) <thing> [[that] you (come across | find | see)] {_BELONG} {_ON} <spot>"
+        f" | the (right | proper | usual | correct) (place | home | spot) for <thing> is [{_ON}] <spot>",
     ),
     Wording(
         "rule",
-        f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>"
+        f"[no] [{_NOTE} [that]] {_HOUSE} <thing> {_BELONG} {_ON} <spot>"
+        f" | [{_NOTE} [that]] {_HOUSE} <thing> {_MUST} be {_ON} <spot>"
         f" | (i | we) (keep | store) <thing> {_ON} <spot>"
         f" | {PERSON} (want | wants | would like | prefer | prefers) <thing> [to be] (kept | stored | put away) "
         f"{_ON} <spot>",
@@ -69,7 +81,10 @@ ASKED: tuple[Wording, ...] = (
         "rules",
         "[tell me | list | show me | repeat] (what are | what were) (your | the | my | our) rules"
         " | (tell me | list | show me | repeat) (your | the | my | our) rules"
-        " | (what | which) rules (do you (have | know | follow) | are there | did i (give | tell) you)",
+        " | (what | which) rules (do you (have | know | follow) | are there | (did | have) (i | we) (give "
+        "| tell | given "
+        "| told | taught) you) | (are there | have you [got] | do you (have | know)) (any | some) rules [(about | for "
+        "| on) <words>]",
         heard="what are your rules",
     ),
     Wording(

@@ -28,7 +28,8 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("identity", "who + you i + are am"),
     ("identity", "name + you your"),
     ("identity", "who + made built created invented + you"),
-    ("doing", "are can do + you + listening hear hearing awake asleep + you me yet still there"),
+    ("hearing", "are can do did + you + listening hear hearing awake asleep understand understood + you me yet still "
+                "there english"),
     ("identity", "call called + what + you your + should shall do can are"),
     ("identity", "tell + about yourself + yourself"),
     ("identity", "introduce describe + yourself"),
@@ -40,6 +41,8 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("abilities", f"what how which + can could should able capable + you i we + {_TASKS}"),
     ("abilities", f"what how which + are is + you your + {_ABILITY} capable able"),
     ("abilities", "anything something + you + can not able"),
+    ("capacity", "can could do able + you + carry hold lift take bring fetch manage + two three several many more once "
+                 "both"),
     ("doing", "where + you + going headed off heading"),
     ("doing", "what + did was i + i we + ask asked tell told want wanted say said order ordered + you"),
     ("doing", "how + long longer far much soon + take takes taking need until till you it this that more longer"),

@@ -182,6 +182,8 @@ LONG_SPEECH = re.compile(
     r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
     r"which)\b)|"
     r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
+    rf"tell {_FAMILY}(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
+    r"tell whoever is (?:in|at) (?:the|my|our) \w+(?: \w+)? (?:that|to)|repeat after me,?|"
     r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?|inform (?:everyone|everybody|them|"
     r"people)(?: that)?)\s+(.+)$"
 )

@@ -48,8 +48,15 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "where",
         f"{ASK} (where | whereabouts) [exactly] (is | are) [it] <thing> (at | now | located | kept | "
         f"lying | standing)"
-        f" | {ASK} where (it is | is it | they are | stands | lies | sits) <thing> | {ASK} where did <thing> (go "
+        f" | {ASK} (where | whereabouts) (would | could | might | may) <thing> be | {ASK} [in] (which "
+        f"| what) (room | place)"
+        f" (do | can | would | will) (i | we | you) find <thing> | {ASK} where (it is | is it | they are "
+        f"| stands | lies | sits) <thing> | {ASK} where did <thing> (go "
         f"| end up | get to) [to]",
+    ),
+    Wording(
+        "recall", f"{ASK} [if | whether] is <spot> [still] (empty | free | clear | bare) [now | still | again]"
+        f" | (is | are) (anything | something) (in | on | at) <spot> [still | left]",
     ),
     Wording("recall", f"(is | are) (anything | something) [still | left] [{LYING}] (in | on | at) <spot>"),
     Wording(
@@ -89,7 +96,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you seen | did you see"
         f" | do we have | have we got | there are] [there | {LYING} | left] (on | in | at) <spot>"
         f" | {ASK} how many [of] <thing> [{BE} there | there are | do (we | i | you) (have | own) | have (we | i) got"
-        f" | do you (see | know | remember) | can you see | have you seen | {BE} (left | here | around)] [left]",
+        f" | do you (see | know | remember) [of] | can you see | have you seen | {BE} (left | here | around)] [left]",
     ),
     Wording(
         "colour",
@@ -142,6 +149,12 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording("battery", "how full is your battery"),
     Wording("rooms", "(which | what) (rooms | places) are in <words>"),
+    Wording(
+        "capacity",
+        "[(can | could) you] (carry | hold | lift) (two | three | four | several | many | more than one) "
+        "(thing | things | objects | items) [at once | at a time | at the same time | together]",
+    ),
+    Wording("hearing", "(can | do | did) you (hear | understand) me"),
     Wording("identity", "who are you", heard="who are you"),
     Wording(
         "thanks",

@@ -4,15 +4,16 @@ from typing import Literal, NamedTuple
 
 Action = Literal[
     "stop", "cancel", "continue", "yes", "no", "refuse",
-    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
+    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait", "count",
     "wait_there", "come_back", "leave", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
-    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
+    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "teach_owned", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at", "put_held",
     "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
-    "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery", "repeat", "swap",
+    "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery", "repeat",
+    "swap",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/grammar/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]
@@ -20,7 +21,7 @@ QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "written", "beside", "extreme", "compare",
-        "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
+        "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery",
         "rules", "belongs", "usual", "last_seen", "repeat",
     }
 )  # fmt: skip

@@ -34,7 +34,8 @@ WORDINGS: tuple[Wording, ...] = (
         "drop that | call it off | (forget | ignore) [that] i (asked | said (anything | that | it) | spoke)"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
         " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
-        " | (i | we) (no longer | do not) (need | want) (it | that) [any more] | not (now | yet) | [maybe] (later | "
+        " | (that | it) will do [for (now | today)] [thanks] | (i | we) (no longer | do not) (need "
+        "| want) (it | that) [any more] | not (now | yet) | [maybe] (later | "
         "another time | some other time)",
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
@@ -104,8 +105,14 @@ WORDINGS: tuple[Wording, ...] = (
         " | (call | name) (this | that | it) [<thing>] [my | our | the] <words> | (call | name) (the "
         "| my | our) <thing> <words>"
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>"
-        " | (remember | learn) <thing> as (my | our) <words>",
+        " | (remember | learn) <thing> as (my | our) <words>"
+        " | [you should know [that]] (this | that) [here] is (called | named | known as) [my | our | the] <words>"
+        " | [in (this | our) (house | home | family)] (this | that | it) goes by [the name [of]] [my | our "
+        "| the] <words>"
+        " | another (name | word) for (this | that | it | <thing>) (is | would be) [my | our | the] <words>"
+        " | what you (have [got] in your hand | are (holding | carrying)) is [called] (my | our | the) <words>",
     ),
+    Wording("teach_owned", "[you should know [that] | learn this one [and]] (this | that | it) is <words>"),
     Wording(
         "forget",
         "(forget | unlearn) ([about] [the name [of] | what is] (my | our) | the name [of] [the]"
@@ -128,7 +135,18 @@ WORDINGS: tuple[Wording, ...] = (
     # The robot itself.
     Wording(
         "say",
-        "(say | announce) [that] <words> | (tell | inform) <thing> that <words>"
+        f"(tell | inform) ([(my | our | the)] {FAMILY} | them | everybody | everyone | people | whoever is | anybody | "
+        "anyone) (in | at) <spot> [that | to] <words>"
+        f" | let ([(my | our | the)] {FAMILY} | them | everybody | everyone | people | whoever is) know (in "
+        f"| at) <spot> "
+        f"[that] <words> | wish ([(my | our | the)] {FAMILY} | them | everybody | everyone "
+        f"| people) <words> (in | at) <spot>",
+    ),
+    Wording(
+        "say",
+        f"wish ([(my | our | the)] {FAMILY} | them | everybody | everyone | people) <words>"
+        f" | (tell | inform) {FAMILY} [that] <words> | repeat after me [and] <words> |"
+                "(say | announce) [that] <words> | (tell | inform) <thing> that <words>"
         " | tell (everybody | everyone | people) in <spot> that <words> | (tell | inform)"
         f" ((my | our | the) {FAMILY} | them | everybody | everyone | people | the others) [that] <words>"
         f" | let (them | everybody | everyone | people | (my | our | the) {FAMILY}) know [that] <words>",
@@ -137,11 +155,13 @@ WORDINGS: tuple[Wording, ...] = (
             heard="wait"),
     Wording(
         "wait",
+        "give it <words> | "
         "(wait | pause | sleep | hold (on | off) | hang (on | about | around) | stay [here | there] | stand by | rest) "
         "[here | there] [for] <words>"
         " | (give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
         " | do nothing for <words> | take a break (for | of) <words>",
     ),
+    Wording("count", "count [up | down] [to | from] <words>"),
     Wording(
         "look_around",
         "(look | take a look | have a look | go and look | glance | scan | search) [all] (around | about | round)"

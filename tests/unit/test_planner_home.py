@@ -92,3 +92,28 @@ def test_where_it_was_last_seen_is_answered_without_a_look(things: str) -> None:
     assert {s.action for s in found.steps} <= {"say"} and not found.again
     assert found.steps or found.detail
     assert plan("where is the green ball", world(), PlannerConfig(), done=[]).again
+
+
+@pytest.mark.parametrize(
+    ("said", "steps"),
+    [
+        ("the right place for cups is the dresser", "rule cups dresser"),
+        ("new rule, keys on the counter", "rule keys breakfast bar"),
+        ("in our house books stay on the bookshelf", "rule books bookshelf"),
+        ("mugs no longer belong on the study shelf", "forget rule mugs"),
+        ("there is no fixed place for mugs any more", "forget rule mugs"),
+        ("are there any rules about mugs", "say You have told me that mugs go on the study shelf."),
+        ("tell my son in the study to come down", "navigate study; say Come down."),
+        ("say the words good morning out loud", "say Good morning."),
+        ("can you carry three things at once", "say No, I can carry one thing at a time. Of several I bring one after "
+         "the other."),
+        ("did you understand me", "say Yes, I hear you, and I understand English."),
+    ],
+)  # fmt: skip
+def test_a_rule_an_announcement_and_a_question_may_be_put_in_other_ways(said: str, steps: str) -> None:
+    assert planned(said) == steps
+
+
+@pytest.mark.parametrize("said", ["that is grandma's cup", "the mugs have to be on the dresser"])
+def test_a_name_needs_a_thing_in_hand_and_a_rule_all_of_a_kind(said: str) -> None:
+    assert "teach" not in planned(said) and "rule" not in planned(said)

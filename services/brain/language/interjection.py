@@ -8,7 +8,7 @@ import msgspec
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.contrasts import NOT_WANTED, contrasted, instead
-from common.language.exchange import PREPOSITIONS
+from common.language.exchange import PREPOSITIONS, verb_first
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, infinitive, normalise
@@ -35,7 +35,8 @@ _AFTER_DOING = re.compile(
 )
 """Before words about the command under way, behind which the next one is to come."""
 _INSTEAD = re.compile(
-    r"^(?:no|whatever you are doing|"
+    r"^(?:no|whatever you are doing|(?:drop|leave|stop) everything(?=,? and\b|,)|before you (?:go on|carry on|continue|"
+    r"do that|do it|finish)(?: with (?:that|it|this))?|"
     r"stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
     r"wait(?! (?:for|here|there|in|at|by|on|until|till)\b)|sorry|"
     r"hold on|hang on|"
@@ -61,11 +62,17 @@ _ONE_MOMENT = re.compile(
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
+    r"^(?:(?:i|we) )?(?:have )?(?:just |already )?found (?:it|them|one|him|her)\b(?!.* but\b)|"
     r"^(?:cancel|abort|scrap|skip|forget|never mind)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
 )
 """What was asked for is not wanted; there is nothing in its place."""
 
 
+_SLIP = re.compile(
+    r"^(?P<wrong>\w+(?: \w+){0,2}),? (?:no|sorry|wait)\b,? (?:(?:no|sorry|wait|i mean),? )*(?:the "
+    r"|my )?(?P<right>\w+(?: \w+)?)$"
+)
+"""A part of the command under way, and what is meant in its place: `desk, no, sorry, bedside table`."""
 _FORBIDDEN = re.compile(
     r"^(?:(?:no|please|oh|wait|actually),? )*(?:(?:(?:do not|never|(?:there is )?no need to|you need not|"
     r"you do not (?:need|have) to) (?P<verb>\w+)|(?:quit|stop|no need for) (?P<doing>(?!bring\b)\w+ing))\b(?P<what>.*)"
@@ -116,6 +123,8 @@ def _control(said: str, words: str) -> Interjection | None:
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
     first, _, reason = words.partition(", ")
+    if reason and asks_for(words.rpartition(", ")[2], "cancel") and not verb_first(words):
+        return Interjection("cancel", said)
     if asks_for(words.rpartition(", ")[2], "stop"):
         return Interjection("stop", said)
     if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
@@ -125,6 +134,8 @@ def _control(said: str, words: str) -> Interjection | None:
 
 def _replacement(said: str, words: str, doing: str) -> Interjection | None:
     """A sentence that puts something, or nothing, in the place of what is under way."""
+    if (slip := _SLIP.match(words)) and set(slip["wrong"].split()) <= set(doing.split()) | DETERMINERS:
+        return Interjection("replace", f"i meant the {slip['right']}")
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
     if _NO_LONGER.match(words) or _CALLED_OFF.match(_CHANGED.sub("", words)):

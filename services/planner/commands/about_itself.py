@@ -9,7 +9,8 @@ ABILITIES = (
     "I can bring you things, find them, put them somewhere or where they belong, throw them away, "
     "tidy up a table or a"
     " room, go somewhere, look around, wait, and say something. You can ask me what I have seen and where, what I am"
-    " doing, what I did and why something failed. Say stop at any time."
+    " doing, what I did and why something failed. I cannot open doors or drawers, pour, cook, clean or switch"
+    " things on. Say stop at any time."
 )
 
 
@@ -74,6 +75,14 @@ def abilities(builder: PlanBuilder, slots: Slots) -> None:
     builder.say(ABILITIES)
 
 
+def capacity(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("No, I can carry one thing at a time. Of several I bring one after the other.")
+
+
+def hearing(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("Yes, I hear you, and I understand English.")
+
+
 def identity(builder: PlanBuilder, slots: Slots) -> None:
     builder.say("I am TidyBot, a household robot. I fetch things and tidy up.")
 
@@ -88,7 +97,8 @@ def battery(builder: PlanBuilder, slots: Slots) -> None:
 
 def rooms(builder: PlanBuilder, slots: Slots) -> None:
     names = [f"the {room.name}" for room in builder.world.household.rooms]
-    builder.say(f"I know {enumeration(names)}." if names else "I know no rooms.")
+    count = f" {len(names)} rooms:" if len(names) > 1 else ""
+    builder.say(f"I know{count} {enumeration(names)}." if names else "I know no rooms.")
 
 
 def thanks(builder: PlanBuilder, slots: Slots) -> None:

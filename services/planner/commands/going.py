@@ -1,12 +1,21 @@
 """What the robot does with itself: going, waiting, looking for something, saying something. Pure."""
 
+import re
+
+from common.language.normalise import Words
 from common.language.pattern import Slots
-from common.language.quantities import LONGEST, duration
+from common.language.quantities import LONGEST, duration, number
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.resolve import referent, referents
+
+_MANNER = re.compile(
+    r"^(?:(?:loudly|softly|quietly|clearly|aloud|out loud) |the words? (?=\w))+"
+    r"| (?:(?:out )?loud|aloud|loudly|softly|for me|in (?:your|a) (?:\w+ )?voice)$"
+)
+"""How something is to be said, which is not said with it."""
 
 
 def go(builder: PlanBuilder, slots: Slots) -> None:
@@ -39,9 +48,18 @@ def leave(builder: PlanBuilder, slots: Slots) -> None:
 
 def wait(builder: PlanBuilder, slots: Slots) -> None:
     """For as long as was said, else for a moment."""
-    seconds = duration(slots["words"]) if "words" in slots else 0.0
+    _wait(builder, slots.get("words", ()))
+
+
+def count(builder: PlanBuilder, slots: Slots) -> None:
+    """Count to a number, one a second."""
+    _wait(builder, slots["words"] if number(slots["words"]) is None else (*slots["words"], "seconds"))
+
+
+def _wait(builder: PlanBuilder, said: Words) -> None:
+    seconds = duration(said) if said else 0.0
     if seconds is None:
-        raise Lost(f"I do not understand how long {' '.join(slots['words'])!r} is")
+        raise Lost(f"I do not understand how long {' '.join(said)!r} is")
     if seconds > LONGEST:
         raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
     builder.wait(seconds)
@@ -66,5 +84,5 @@ def say(builder: PlanBuilder, slots: Slots) -> None:
     """What was said to be said, where it is to be heard."""
     if "spot" in slots:
         go(builder, slots)
-    text = " ".join(slots["words"])
+    text = _MANNER.sub("", " ".join(slots["words"]))
     builder.say(f"{text[0].upper()}{text[1:]}.")

@@ -70,7 +70,7 @@ def rule_always(builder: PlanBuilder, slots: Slots) -> None:
 def forget_rule(builder: PlanBuilder, slots: Slots) -> None:
     """The rule about some things, or the one that was told last."""
     told = builder.world.edits.rules
-    things = normalise(" ".join(slots.get("words", ())))
+    things = normalise(" ".join(without_determiners(slots.get("words", ()))))
     about = [r for r in told if not things or things in (r.things, f"{r.things}s", r.things.removesuffix("s"))]
     if not about:
         raise Refusal(f"you have told me no rule{f' about {things}' if things else ''}")

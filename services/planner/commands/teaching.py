@@ -6,7 +6,7 @@ from common.messages import PlanStep
 from common.naming.names import normalise
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LONGEST_NAME
-from services.planner.plan_builder import Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 
 
 def teach(builder: PlanBuilder, slots: Slots) -> None:
@@ -16,6 +16,14 @@ def teach(builder: PlanBuilder, slots: Slots) -> None:
     if thing and (not isinstance(phrase, Phrase) or phrase.sense.new):
         raise Lost(f"I know no {thing} that could have a name")
     builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
+
+
+def teach_owned(builder: PlanBuilder, slots: Slots) -> None:
+    """`that's grandma's cup` of what the hand holds or has just brought; of nothing else it tells a name."""
+    owned = any(word.endswith("'s") for word in slots["words"])
+    if not owned or (builder.world.held is None and builder.world.history.last is None):
+        raise Lost(f"{NOT_UNDERSTOOD} what {' '.join(slots['words'])!r} has to do with it")
+    teach(builder, slots)
 
 
 def forget(builder: PlanBuilder, slots: Slots) -> None:

@@ -119,7 +119,7 @@ def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> Re
         return reason
     if alone:
         return apply_first(words, builder, "name")
-    if verb in ("go", "drive", "come", "head", "visit") and builder.vocabulary.spot(words):
+    if (verb in ("go", "drive", "come", "head", "visit") or before[1:2] == ("by",)) and builder.vocabulary.spot(words):
         return apply_first(("go", "to", *words), builder, "command")
     if verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.

@@ -37,8 +37,9 @@ _NO_THERE = re.compile(
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
     r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then |do )*(?P<thing>.+?)"
-    r" (?:too|as well|also)(?: please)?$"
-    r"|^(?:and|(?:now|next)(?= the| my)|what about|do (?:the same|likewise|that|it) (?:for|with|to)) (?P<other>.+)$"
+    r" (?:too|as well|also|likewise)(?: please)?$"
+    r"|^(?:and|(?:now|next)(?= the| my)|what about|likewise(?= the| my)|do (?:the same|likewise|that|it) (?:for"
+    r"|with|to)) (?P<other>.+)$"
 )
 
 
