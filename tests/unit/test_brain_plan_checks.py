@@ -58,6 +58,8 @@ def test_an_answer_chooses_by_what_only_one_of_the_options_has() -> None:
     assert chosen("the one i eat", ["apple", "red ball"], FLAT, HOME) == "apple"
     assert chosen("well the one here in the lounge", ["bookshelf", "study shelf"], FLAT, HOME) == "bookshelf"
     assert chosen("no the white one", mugs, FLAT, HOME) == "white mug"
+    assert chosen("whichever is in the study", [*mugs, "white mug"], FLAT, HOME) == "white mug"
+    assert chosen("whichever is nearest", mugs, FLAT, HOME) is None and chosen("whichever", mugs) == "red mug"
     assert reply("neither of them")[0] == "no" and reply("aye, i did, that's right")[0] == "yes"
 
 

@@ -21,7 +21,8 @@ _NO_NAME = frozenset({
 _CARDINALS = ("one", "two", "three", "four")
 _ANY_WILL_DO = re.compile(
     r"^(?:(?:oh|well|um|er|just|really),? )*(?:(?:any|either)(?: (?:one|of (?:them|those|these|the two)))?"
-    r"(?: (?:will do|is fine|would do|please|really|works|is good))?$|any,|whichever|whatever\b"
+    r"(?: (?:will do|is fine|would do|please|really|works|is good))?$|any,|(?:whichever|whatever)\b(?! (?:one "
+    r")?(?:is|was|stands|lies|has|comes)\b)"
     r"|you (?:choose|pick|decide)|surprise me|(?:it is )?up to you"
     r"|(?:it is |they are )?all the same|your choice|no preference)"
     r"|\b(?:do not (?:mind|care)(?: which| either way)?$|(?:does not|no) matter|makes no (?:odds|difference)"
@@ -44,14 +45,15 @@ def chosen(
     Who does not mind gets the first; another colour of the same kind names one that was not among the options.
     """
     whole = expand(normalise(answer))
-    if _ANY_WILL_DO.search(whole) and options:
-        return options[0]
     if found := _singled_out(answer, options, known, household):
         return found
     said = _SAID_BEFORE.sub("", whole)
-    if forbids(said) or _UNFIT.search(said):
-        return None
-    return _told_apart(said, options, known, household) or _another(said.split(), options, known)
+    fit = not (forbids(said) or _UNFIT.search(said))
+    if fit and (found := _told_apart(said, options, known, household)):
+        return found
+    if _ANY_WILL_DO.search(whole) and options:
+        return options[0]
+    return _another(said.split(), options, known) if fit else None
 
 
 def _told_apart(
