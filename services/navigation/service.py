@@ -71,7 +71,7 @@ class NavigationService:
             self._shown = int(now)
             self._changes.save(self._map.changes, now)
             self._contacts.forget(now)
-            self._map.place(self._destinations.on_floor(), "floor")
+            self._map.place(self._destinations.on_floor(self._state.tracker.people()), "floor")
             if io.has_subscribers(topics.COSTMAP):
                 io.publish(topics.COSTMAP, self._map.picture(now))
         if io.take_all(topics.ROBOT_STOP) and self._busy:
