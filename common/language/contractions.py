@@ -62,7 +62,7 @@ _CONTRACTIONS = tuple(
         (r"\b(?:you're|youre)\b", "you are"),
         (r"\b(they|we)'re\b", r"\1 are"),
         (r"\b(i|you|they|we)'?ve\b", r"\1 have"),
-        (rf"\b({_OF_PEOPLE})'ll\b", r"\1 will"),
+        (rf"\b({_OF_PEOPLE}|that|this|there)'ll\b", r"\1 will"),
         (r"^ill(?= \w)", "i will"),
         (r"\b(i|you|they|we|he|she)'d (better)\b", r"\1 should"),
         (r"\b(i|you|they|we|he|she|it|that)'d\b", r"\1 would"),

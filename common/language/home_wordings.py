@@ -28,6 +28,8 @@ TOLD: tuple[Wording, ...] = (
         f"[(remember | learn) [that | and]] ((this | that) <thing> | this | that | here) is [called | named] {_THE}"
         f" <words> | (call | name) ((this | that) <thing> | this | that | here) {_THE} <words>"
         f" | (remember | learn) (this | that | here) [place | spot] as {_THE} <words>"
+        f" | (remember | learn | know) (this | that) <thing> as {_THE} <words>"
+        f" | (this | that) <thing> (to be | shall be | will be | should be) (called | named | known as) {_THE} <words>"
         f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
         f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"
         f" | (call | rename) (the | my | our) <spot> {_THE} <words>",

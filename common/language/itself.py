@@ -40,6 +40,7 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("abilities", "how + can could + i we + use of you + you"),
     ("abilities", f"what how which + can could should able capable + you i we + {_TASKS}"),
     ("abilities", f"what how which + are is + you your + {_ABILITY} capable able"),
+    ("doing", "any + luck joy success progress"),
     ("abilities", "anything something + you + can not able"),
     ("capacity", "can could do able + you + carry hold lift take bring fetch manage + two three several many more once "
                  "both"),

@@ -117,3 +117,9 @@ def test_a_rule_an_announcement_and_a_question_may_be_put_in_other_ways(said: st
 @pytest.mark.parametrize("said", ["that is grandma's cup", "the mugs have to be on the dresser"])
 def test_a_name_needs_a_thing_in_hand_and_a_rule_all_of_a_kind(said: str) -> None:
     assert "teach" not in planned(said) and "rule" not in planned(said)
+
+
+def test_a_place_and_a_thing_may_be_learnt_by_a_name_without_my() -> None:
+    assert planned("learn this place as the library") == "name place library"
+    assert planned("this table shall be known as the workbench") == "name surface workbench"
+    assert planned("remember this mug as bob") == "teach mug bob"
