@@ -117,7 +117,7 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     """Flat, what is in the hand, and history of a context."""
     flat = list(FLAT)
     if tag == "held":
-        history = History(taken_from={about: next(o.on for o in FLAT if o.label == about)})
+        history = History(taken_from={about: next((o.on for o in FLAT if o.label == about), "")})
         return [o for o in flat if o.label != about], about, history
     if tag not in ("last", "failed"):
         return flat, "", History(said="x")

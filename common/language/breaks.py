@@ -44,9 +44,31 @@ _SUBJECTS = frozenset(
         "i", "we", "he", "she", "they", "it", "there", "someone", "somebody", "everyone", "everybody", "this", "that",
         "these", "those", "you", "yesterday", "earlier", "mum", "mom", "mommy", "mummy", "dad", "daddy", "grandma",
         "grandpa", "guests", "dinner", "lunch", "kids", "children", "people", "visitors",
+        "tea", "supper", "breakfast", "food", "grandad", "gran", "granny",
     }
 )  # fmt: skip
 """Words with which somebody begins to tell something, beside articles."""
+_DONE = frozenset(
+    [
+        "left",
+        "lost",
+        "gone",
+        "got",
+        "put",
+        "taken",
+        "come",
+        "run",
+        "forgotten",
+        "broken",
+        "spilt",
+        "eaten",
+        "hidden",
+        "fallen",
+        "made",
+        "had",
+        "been",
+    ]
+)
 _ANSWER = re.compile(r"^(?:no|nope|yes|yeah|well),\s+")
 _NO_STATEMENT = re.compile(
     r"^(?:if|unless|when|whenever|in case|should|suppose|supposing|imagine|pretend|assume|what|who|why|where|how|"
@@ -145,6 +167,8 @@ def is_statement(text: str, ended: bool = True) -> bool:
         or _FORBIDS.search(bare)
     ):
         return False
+    if words[1] == "has" and len(words) > 3 and (words[2].endswith("ed") or words[2] in _DONE):
+        return True  # "tom has left his ball on the bookshelf"
     return words[0] in _SUBJECTS or (words[0] in DETERMINERS and len(words) > 2)
 
 

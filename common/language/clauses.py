@@ -9,9 +9,11 @@ from common.language.politeness import LONG_SPEECH, without_lead, without_polite
 
 _FILLER = re.compile(
     r"\s*\b(?:u+m+|u+h+(?!,? huh\b)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
-    r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it))"
+    r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it)|"
+    r"what do you call (?:it|them|that|those))"
     r"(?:,? (?:again|now|then|so|well|oh|ah|yes|yeah|ok|okay|right|no)\b)+,?|\blet me think,? (?=the|a|my)"
     rf"|\b(?:you know|like),?(?= {A_VERB}\b)"
+    r"|\b(?:(?:the|my) )?(?:whatsit|thingy|thingie|wotsit|whatchamacallit|thingamajig|doodah),?(?= (?:the|my)\b)"
 )
 """Sounds of somebody who thinks while speaking."""
 _STUTTER = re.compile(

@@ -6,6 +6,7 @@ verb that is left out. `common/language/word_order.py` applies them.
 
 import re
 
+from common.language.lexicon import FAMILY
 from common.language.verb_classes import one_of
 
 TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
@@ -31,7 +32,8 @@ _WANT = (
     "(?:(?:ever|so|very|really|most) )*(?:glad|grateful|thankful|happy|pleased|obliged) "
     "(?:of|for|with|about))|would kill for|would have(?= "
     "(?:the|a|an|some|my|one|two|another)\\b)|have a craving for|am gasping "
-    "for|am desperate for|could go for|(?:was|am|have been) (?:hoping|wishing) for|should have(?= "
+    "for|am desperate for|could go for|(?:was|am|have been) (?:hoping|wishing) for|shall have|shall take|should "
+    "have(?= "
     "(?:the|an?|some|my)\\b))"
 )
 _CONSUME = "(?:have|get|eat|drink|play with|use|read|hold|see|look at|borrow|taste|try|take)"
@@ -65,6 +67,30 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
+        (rf"(?:get|take|pick up|pick|have|lift|put) {NP} (?:in|into) your hands?", r"pick up \1"),
+        (rf"(?:clutch|clasp|seize|hold(?: on to| onto)?|keep hold of|grip) {NP} (?:until|till) .+", r"pick up \1"),
+        (rf"(?:scour|comb|ransack) (?:.+ )?for {NP}", r"find \1"),
+        (rf"(?:do )?(?:track|hunt) {NP} down", r"find \1"),
+        # Where somebody or something is wanted.
+        (rf"(?:you are|your (?:presence|attendance|help|assistance) is) (?:needed|wanted|required|desired|requested)"
+         rf"(?: over)? (?:in|at|by) {NP}", r"go to \1"),
+        (r"(?:i|we) (?:want|need|would like) you (?:in|at|by) ((?:the|my|our) .+)", r"go to \1"),
+        (r"(?:i|we) (?:want|need|would like) you (?:next to|beside|with|by|near|close to|at) (?:me|us)(?: again)?",
+         "come back"),
+        (rf"{NP}(?: and that)? is where you (?:should be|are needed|are wanted|belong)", r"go to \1"),
+        (rf"{NP}(?: and that)? is where {NP} (?:(?:should|must|needs to|ought to|has to|is to|can) "
+         rf"(?:go|stand|be|end up|live|sit)|goes)", r"put \2 on \1"),
+        (rf"{NP}(?: and that)? is where (?:i|we) {_WANT} {NP}", r"put \2 on \1"),
+        (rf"(?:make sure|see to it|see|ensure)(?: that)? there is {NP} ({TO_PLACE}) {NP}", r"put \1 \2 \3"),
+        # For somebody else than the speaker: there is one place to bring things to.
+        (rf"(?:bring|give|fetch|hand|pass|get) (?:your |my |our |old )*{FAMILY.replace(' ', '').replace('(', '(?:')} "
+         r"((?:the|that|a|an|some|his|her|my) .+)", r"bring me \1"),
+        # What would be welcome.
+        (rf"{NP} (?:would|will) (?:really |just )?(?:help(?: me)?(?: out)?|hit the spot|go down well|make my day|be "
+         r"(?:(?:so|very|just|much|really|a|an|great|real|the) )*(?:great|good|nice|lovely|wonderful|perfect|"
+         r"super|ideal|"
+         r"handy|useful|welcome|help|blessing|treat|godsend|champion|brilliant|fantastic|appreciated|thing|ticket))",
+         r"bring me \1"),
         # Clefts.
         (rf"(?:all|what|the only thing|the thing|the one|everything)(?: that)? {_WHO}(?: really| just| "
          rf"actually)? {_WANT}"

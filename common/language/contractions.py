@@ -5,6 +5,7 @@ Recognised speech and hurried typing leave the apostrophes out, so both spelling
 
 import re
 
+from common.language.dialect import plainly_spelled
 from common.language.lexicon import A_VERB
 
 _OF_PEOPLE = "i|you|we|they|he|she|it|who"
@@ -26,6 +27,12 @@ _CONTRACTIONS = tuple(
     for short, long in (
         # Spoken spellings.
         (r"([a-z])\1{2,}", r"\1"),
+        (
+            r"\b(\w{3,})'s (?=(?:left|lost|moved|taken|put|hidden|dropped|forgotten|finished|eaten|broken|spilt|"
+            r"come|run|"
+            r"fallen|made|had)\b)",
+            r"\1 has ",
+        ),
         (r"\b(?:pls|plz|plox|ple+a+se+)\b", "please"),
         (r"\b(?:nah|naw|noo+)\b(?= \w|, )", "no"),
         (r"\br u\b", "are you"),
@@ -104,6 +111,39 @@ _SAME = tuple(
         ),
         (r"^(?:you )?(seen(?= (?:the|my|our|any|that)\b)|got(?= any\b)) ", r"have you \1 "),
         (r"\bhow come\b", "why"),
+        (r"\b(the|a|my) (?!same\b|other\b|different\b)(\w+) colou?r(?:ed)? (?=\w)", r"\1 \2 "),
+        (
+            r"\b(bring|get|fetch|carry) (it|them|that) (?:in|through|along|over|down|round)"
+            r"(?= to me\b| here\b| from\b| please\b|$|[,;.!?])",
+            r"\1 \2",
+        ),
+        (r"\b(bring|bringing|fetch) ((?:the|my|a) (?:\w+ ){1,3}?)(?:along|through)(?=$|[,;.!?])", r"\1 \2"),
+        (r"\b(?:the|my) (\w+s),? (?:both|all|each) of them,? (?=(?:into|onto|to|on|in)\b)", r"all the \1 "),
+        (r",? no matter which,?(?= |$)", ""),
+        (r"\bgo at (?=(?:the|my)\b)", "go to "),
+        (r"\bhow is about\b", "how about"),
+        (
+            r"\b(?:have|take) (?:a|another) (?:\w+ )?(?:look|squiz|gander|nosey|shufti|hunt|search|peek|scout|rummage)"
+            r"(?: round| around| about)? for\b",
+            "look for",
+        ),
+        (
+            r"\b(?:having|taking) (?:a|another) (?:\w+ )?(?:look|squiz|gander|hunt|search|peek|rummage)"
+            r"(?: round| around| about)? for\b",
+            "looking for",
+        ),
+        (r"\b(get|take) (?:a )?hold of\b", r"\1"),
+        (r"\b(?:take|get|see|shift|haul|drag) yourself (?:(?:off|over|along|down|on) )*(?=(?:in|on)?to\b)", "go "),
+        (r"\b(?:take|get|shift|haul|drag|bring) yourself (?:over )?(?=here|home|back)", "come "),
+        (r"^(back|home|here|over here) you come\b", r"come \1"),
+        (
+            r",? (?:and |so |then |back |straight |off )*(into|in|onto|to) ((?:the|my) \w+(?: \w+)?) with (it|them)\b",
+            r" and put \3 \1 \2",
+        ),
+        (r"\bboth (?=(?:go|belong|need|should|must|have to)\b)", ""),
+        (r",? (?:preferably|ideally|for preference),? (?=(?:the|a|my)\b)", ", "),
+        (r"\b(bring|give|fetch|hand|pass|get|take) to (me|us) (?=(?:the|my|a|an|some|that)\b)", r"\1 \2 "),
+        (r" for to (?:eat|drink|use|read|see) (?:it|them)\b", ""),
         (r"\b(once|as soon as) ((?:the|my) (?:\w+ )?\w+) (?:is|are) (?=(?:in|on|into|onto)\b)", r"\1 you put \2 "),
         (r"\b(?:put|move|set|place) (.+?) where (.+?) is,? and \2 where \1 is\b", r"swap \1 and \2"),
         (rf"\b({A_VERB}) what (?:you are (?:holding|carrying)|is in your hand) (?=in|on|to|back)", r"\1 it "),
@@ -150,6 +190,8 @@ _TO_BE_SAID = re.compile(r"^(?:(?:please|can you|could you|would you|go|and) )*(
 
 def expand(text: str) -> str:
     """Normalised text with `what's` written as `what is` and `plus` as `and`."""
+    if not _TO_BE_SAID.match(text):
+        text = plainly_spelled(text)
     text = _SPELLED.sub(lambda found: _SPELLINGS[found[0]], text)
     for short, long in _CONTRACTIONS if _TO_BE_SAID.match(text) else (*_CONTRACTIONS, *_SAME):
         text = short.sub(long, text)

@@ -23,7 +23,8 @@ _PAST = {
 
 def normalise(text: str, keep: str = "") -> str:
     """Lower-case words separated by single spaces; accents and punctuation go, except the marks in `keep`."""
-    folded = unicodedata.normalize("NFKD", text.lower().replace("’", "'").replace("_", " "))
+    plain = re.sub("&+", " and ", text.lower().replace("’", "'").replace("_", " "))
+    folded = unicodedata.normalize("NFKD", plain)
     letters = "".join(c for c in folded if not unicodedata.combining(c))
     return " ".join(re.sub(rf"[^\w'{re.escape(keep)}]+", " ", letters).split())
 

@@ -14,6 +14,7 @@ PRONOUNS = frozenset({"it", "that", "this", "him", "her", "this one", "that one"
 PLURAL_PRONOUNS = frozenset(
     {
         "them", "those", "these", "both", "all of them", "both of them",
+        "the pair of them", "the two of them", "the both of them", "the lot of them",
         "them both", "those two", "these two", "both of those", "them all", "all of it",
     }
 )  # fmt: skip
@@ -38,6 +39,9 @@ RELATIONS: tuple[tuple[str, Relation], ...] = (
     ("on the left side of", "left of"), ("on the right side of", "right of"), ("from the left side of", "left of"),
     ("from the right side of", "right of"), ("at the left end of", "left of"), ("at the right end of", "right of"),
     ("between", "between"), ("in between", "between"), ("close to", "near"), ("from inside", "on"), ("out of", "on"),
+    ("from beside", "near"), ("from next to", "near"), ("from near", "near"), ("from by", "near"), ("from "
+     "behind", "behind"),
+    ("from between", "between"), ("from in front of", "front of"),
     ("from", "on"), ("inside", "on"), ("behind", "behind"), ("near", "near"), ("beside", "near"), ("by", "near"),
     ("off", "on"), ("on", "on"), ("in", "on"), ("at", "on"),
 )  # fmt: skip
@@ -75,12 +79,14 @@ _TAILS = (
     "over there", "there", "of mine", "of ours", "of yours", "you see", "you can see", "you found", "you have found",
     "you are holding", "you hold",
     "you can find", "you have got", "we have", "we own", "i have", "we have got", "you have", "you know",
-    "of something", "of any kind", "of some kind", "of some sort", "somewhere", "around here", "in the house",
+    "you like", "you want", "you fancy", "you please", "no matter which", "anywhere", "someplace", "of something",
+    "of any kind", "of some kind", "of some sort", "somewhere", "around here", "in the house",
     "in the flat", "in the apartment", "in the whole house", "at home", "in the building",
 )  # fmt: skip
 _CLAUSES = (
     "that is lying", "that is standing", "that is sitting", "which is lying", "which is standing", "that stands",
-    "that stood", "which stood", "which stands", "that lay", "that sat", "that lies", "that are lying",
+    "that finds itself", "which finds itself", "that lives", "which lives", "that stood", "which stood", "which "
+    "stands", "that lay", "that sat", "that lies", "that are lying",
     "that are standing", "you left", "i left", "i put", "that i left", "that i put", "sitting", "that sits",
     "that was", "that were", "which was", "that is", "that are", "that's", "which is", "what is", "that you can find",
     "which you can find", "you can find", "that you will find", "kept", "located", "which are", "lying", "standing",
@@ -163,7 +169,8 @@ def without_measure(words: Words) -> Words:
 
 
 _WITH = re.compile(
-    r"^(?P<container>.+?)(?: (?:that|which) (?:is|has))? (?:with|containing|full of|filled with|of) "
+    r"^(?P<container>.+?)(?: (?:that|which) (?:is|has))? "
+    r"(?:with|containing|full of|filled with|of|labell?ed|marked|(?:that )?(?:says|saying|reads|reading)(?: on it)?) "
     rf"(?:(?:{'|'.join(sorted(DETERMINERS))}) )*(?P<contents>.+?)"
     r"(?:(?: written| printed)? (?:in|inside|on) it| inside| in there)?$"
 )

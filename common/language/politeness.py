@@ -22,6 +22,12 @@ _FAMILY = FAMILY.replace(" ", "")
 _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
+_DEARS = (
+    "hen|pal|hun|hon|luv|pet|duck|ducky|petal|poppet|cobber|sunshine|guv|guvnor|boss|chief|champ|lass|lad|sugar|baby|"
+    "babe|doll|bruv|brother|darlin|darling|sir|madam|ma'am|jeeves|butler|mr robot|my lovely|my good man|old "
+    "thing|old bean"
+)
+"""How the robot is called by those who like it."""
 _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
@@ -36,6 +42,12 @@ _OCCASION = (
 """Occasions and conditions that are none."""
 
 _ADDRESS = (
+    rf"(?:{_DEARS})(?=,)|(?:{_DEARS})(?= "
+    r"(?:please|can|could|will|would|go|come|back|bring|fetch|get|give|put|take|pick|move|clear|find|tidy)\b)|"
+    "mr robot|mister robot|at some point|(?:no|now) then|righto|right then|right you are|as discussed|as agreed|"
+    "no (?:pressure|rush(?: at all)?|"
+    "hurry)(?:,? but)?|"
+    "if (?:i|you) (?:may|might)(?=,)|ta for (?:earlier|that)|much obliged|cheers|"
     r"whatever (?:you do|happens)|no(?=,? (?:something|bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|"
     r"leave|set)\b)|"
     r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
@@ -92,6 +104,10 @@ _FRAMES = (
     rf"{_CAN} {_YOU}(?! see (?:the|my|a|any)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
     rf"(?: (?:be able to|try to|like to|want to|mind|do me (?:a|the) favou?r(?: and| of)?"
     rf"|be (?:\w+ ){{1,6}}?(?:to|and|as to))\b)?",
+    rf"(?:let us see|show me(?: that)?|i (?:want|would like) to see) you(?: can)?(?= (?:{A_VERB}|lift)\b)",
+    rf"(?:can |could |please )?help (?:me|us)(?: to)?(?= {A_VERB}\b)|do(?= (?:pick|track|look) )",
+    r"can(?= (?:bring|fetch|give|put|go|come|find|tidy|clean|help)\b)",
+    r"(?:might|may|could) i (?:\w+ )?(?:impose (?:up)?on|trouble|ask|bother|prevail (?:up)?on) you to(?= \w)",
     rf"(?:execute|perform|initiate|commence|proceed to|carry out)(?: an?| the)?(?= {A_VERB}\b)",
     r"want to(?=\s+\w)|(?<=please )(?:you|to)(?= \w)",
     r"you(?= (?:bring|give|take(?= .+ (?:to|from|off|out|into|and|up)\b)|go|get|fetch|throw|find|come|carry|move|"
@@ -111,6 +127,7 @@ _FRAMES = (
     r"(?:why (?:do not|not)|how about) (?:you|we)(?=\s+\w)|(?:what|how) about(?=\s+\w+ing\b)",
     r"(?:i|we|people|everyone|everybody|they)(?: always| all| usually)?(?=\s+call\b)|let us|we "
     r"(?:should|could|must|need to|have to|ought to|want to|had better|better)",
+    r"(?:do )?be (?:careful|quick|gentle|good|nice|kind|sweet)(?: with it)? and(?= \w)",
     r"(?:do )?be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)",
     r"(?:(?:do not|never) (?:forget|fail)|remember|(?:make|be) sure|feel free|try|go ahead|start|"
     r"get (?:busy|going|to work|moving|up))(?: to| and| by|(?: that)? you)(?=\s+\w)",
@@ -128,6 +145,19 @@ _FRAMES = (
 )
 """Frames of a request; what is asked for follows."""
 _ENDINGS = (
+    rf"(?<!the )(?<!my )(?<!our )(?<!his )(?<!her )(?<!an )(?<! a )(?<!to )(?<!for )(?<!with )(?:{_DEARS})|"
+    r"(?:and )?(?:that|it|this|which) (?:would|will) (?:really )?(?:be (?:\w+ ){0,2}?(?:great|super|nice|lovely|good|"
+    r"brilliant|champion|wonderful|perfect|fantastic|handy|grand|smashing|appreciated)|help(?: (?:me|us|a lot|out))*|"
+    r"make my day)|(?:could|can|would|will) you (?:see to|sort|arrange) (?:it|that|this)|"
+    r"and (?:just |then |you )*(?:keep|hold|hang)(?: (?:a )?(?:hold|haud))?(?: (?:on ?to|of))? it"
+    r"(?: (?:tight|nice and tight|there|safe|for me|for now|a (?:minute|moment|bit|while)|like that)(?: only)?)?|"
+    "like a good (?:lad|lass|boy|girl|fellow|chap|robot)|there is a (?:good )?(?:lad|lass|dear|love|boy|girl|"
+    "pet|sport|chap)|"
+    r"before (?:it|he|she|they|(?:your|my|the) \w+|someone|somebody) (?!you\b).+|"
+    r"else (?:i|he|she|they|we) (?:will|am|is|are|might) .+|"
+    "on the double|pronto|sharpish|lickety split|in (?:a|the) jiffy|or what|or not|if you (?:would|will)(?: be "
+    "so kind)?|"
+    "if it is no (?:bother|trouble|hassle)|urgently|why do not you|go ahead|"
     "(?:it )?(?:does|do) not matter(?: which(?: one)?)?|(?:i|we) do not (?:mind|care) which(?: one)?|"
     "(?:pretty )?please(?: with .+)?|right now|(?:right )?about now|right away|now|quickly|at once|"
     "immediately|straight away|this instant|for me|(?:just )?for now|"
@@ -177,7 +207,8 @@ _FOR_ME = re.compile(
 )
 """Taking something for somebody is bringing it."""
 LONG_SPEECH = re.compile(
-    r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that|"
+    r"^(?:(?:say|announce)(?: that)?|(?:shout|yell|call)(?: out)? that|tell (?:them|everybody|everyone|people|"
+    r"us|me) that|"
     r"tell (?:everybody|everyone|people) in (?:the|my|our) \w+(?: \w+)? that|"
     r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
     r"which)\b)|"

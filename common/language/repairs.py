@@ -95,6 +95,11 @@ _WHERE_IT_IS = re.compile(
 _THE_OTHER_ONE = re.compile(
     r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
 )
+_WILL_DO = re.compile(
+    r"^(?P<said>(?!.*\b(?:if|or|not)\b)[^,]* (?:an?|some|something) [^,]+), (?P<one>(?:the|my|that) (?:\w+ ){1,3}?)"
+    r"(?:will|would) (?:do|be (?:fine|ok|okay|good|enough))$"
+)
+"""Something of a kind, and which one is as good as any."""
 _APPOSED = re.compile(
     r"^(?P<thing>(?:the|my|that) \w+(?: \w+)?), (?:the|my|that) one (?P<which>(?:on|in|at|from|next "
     r"to|near|beside|with) [^,]+),? "
@@ -121,6 +126,8 @@ def settled(text: str, is_place: IsPlace) -> str:
         text = f"{found['said']} {found['where']}"
     if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
         text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
+    if (found := _WILL_DO.match(text)) and verb_first(without_politeness(found["said"])):
+        text = replaced(without_politeness(found["said"]), found["one"].strip(), is_place) or text
     if found := _NOT_THERE.match(text):
         text = found["said"]
     text = _refined(_repaired(text, is_place))

@@ -20,7 +20,7 @@ _WORDS: dict[VerbClass, str] = {
     "tidy": f"{TIDY} order sort smarten spruce neaten arrange empty fix straighten freshen unclutter restore free",
     "go": f"go {GO} {MOVE} toddle trot trundle scoot zoom race march saunter amble shuffle potter skip cruise journey "
     "venture visit approach swing shoot appear report join advance relocate creep glide edge park position bring get "
-    "scurry scuttle scamper trek tootle whizz zip be stand meet",
+    "scurry scuttle scamper trek tootle whizz zip be stand meet withdraw retire repair retreat",
     "seek": f"{SEEK} search look hunt trace detect discover identify spy uncover scout rummage pinpoint lost misplaced "
     "mislaid missing",
     "hold": "pick lift hold grasp grip grab clutch seize take raise clasp",

@@ -23,7 +23,8 @@ WORDINGS: tuple[Wording, ...] = (
         "going | doing that | what you are doing)"
         " | hold still | [no | please] do not [move | do (that | it | this)]"
         " | [that is it] [that is | it is] enough | quit "
-        "(it | that) | cut it out | stay (there | where you are) | emergency stop",
+        "(it | that) | cut it out | knock it off | give over | pack it in | leave off | give it a rest | stay "
+        "(there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
     Wording(

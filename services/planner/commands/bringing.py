@@ -2,7 +2,7 @@
 
 from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS, enumeration
-from common.language.noun_phrase import PRONOUNS
+from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.pattern import Slots
 from common.messages import PlanStep
 from services.planner.commands.hand import take
@@ -17,6 +17,8 @@ from services.planner.reference.resolve import referent, referents
 from services.planner.world import BelievedObject
 
 RELEASED = PlanStep(action="release")
+_OVER = ["return", "release"]
+"""What is done with a thing in the hand to hand it over."""
 
 
 def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
@@ -37,9 +39,21 @@ def fetch(builder: PlanBuilder, slots: Slots) -> None:
     for meant in everything:
         if [meant.object.label] == [t.label for t in builder.last] and builder.steps[-1:] == [RELEASED]:
             continue  # "as soon as you have got the apple bring it here": that is done already
+        if " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS and _brought(builder, meant.object):
+            continue  # "she needs her block, bring it"
         take(builder, meant)
         builder.hand_over()
     builder.last = [m.object for m in everything]
+
+
+def _brought(builder: PlanBuilder, item: BelievedObject) -> bool:
+    """Is the last that the plan does with a thing to hand it over?"""
+    over = {
+        step.object: [after.action for after in builder.steps[at + 1 : at + 3]] == _OVER
+        for at, step in enumerate(builder.steps)
+        if step.action == "grasp"
+    }
+    return over.get(item.label, False)
 
 
 def deliver(builder: PlanBuilder, slots: Slots) -> None:
@@ -55,7 +69,14 @@ def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
         there = Spot(surface.name, receptacle=surface) if surface else None
     if there is None:
         raise Lost("I do not know which place you mean by there")
-    _deliver(builder, referents(builder, slots["thing"], prefer_held=True), there)
+    everything = referents(builder, slots["thing"], prefer_held=True)
+    here = {there.name}
+    if all(not m.object.held and {m.object.on, builder.world.room_of(m.object)} & here for m in everything):
+        for meant in everything:  # "go to the study, take the mug there"
+            take(builder, meant)
+        builder.last = [m.object for m in everything]
+        return
+    _deliver(builder, everything, there)
 
 
 def put(builder: PlanBuilder, slots: Slots) -> None:

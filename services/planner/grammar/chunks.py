@@ -80,7 +80,9 @@ def _unlisted(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
 
 
 def _plain(phrase: Phrase) -> bool:
-    """Does it name a kind or a thing, without what that stands next to?"""
+    """Does it name a kind or a thing, without what that stands next to? Any word could be a thing nobody has listed."""
+    if phrase.sense.new and phrase.text.split()[0] not in DETERMINERS:
+        return False  # "he is asleep on me"
     of_ones = phrase.sense.every and phrase.noun in ("one", "ones") and bool(phrase.colours or phrase.which)
     return (not phrase.sense.every or of_ones) and not phrase.relation
 

@@ -17,7 +17,7 @@ from services.planner.choice_points import ChoicePoints, every
 from services.planner.commands import answers
 from services.planner.config import PlannerConfig
 from services.planner.grammar.accounting import CONDITIONS, as_command, unaccounted
-from services.planner.grammar.asides import without_asides
+from services.planner.grammar.asides import with_tales_apart, without_asides
 from services.planner.grammar.chunks import chunks
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.guess import Guess, answer, guess
@@ -188,7 +188,11 @@ class _Attempts:
     def _without_more(self) -> list[str]:
         """What was said without the reason behind it, and without the parts that ask for nothing, where it has such."""
         whole = self._command_words()
-        shorter = (without_reason_behind(whole), without_asides(whole, self._is_idle))
+        shorter = (
+            without_reason_behind(whole),
+            without_asides(whole, self._is_idle),
+            with_tales_apart(whole, lambda words: bool(chunks(words, self._vocabulary, unlisted=True))),
+        )
         return [text for text in dict.fromkeys(shorter) if text != whole]
 
     def _is_idle(self, words: Words) -> bool:

@@ -148,6 +148,8 @@ def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     any_one = rest[:1] in (("a",), ("an",), ("some",), ("any",), ("one",))
     determined = False
     while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS):
+        if rest[0] in ("the", "my") and rest[1] in ("a", "an", "the"):
+            return None  # a word misheard: "the a pull"
         rest, determined = rest[1:], True
     first = next((i for i, w in enumerate(rest[:-1]) if w not in vocabulary.colours), len(rest) - 1)
     colours, noun = tuple(vocabulary.colours[w] for w in rest[:first]), rest[first:]

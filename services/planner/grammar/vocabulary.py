@@ -245,7 +245,19 @@ class Vocabulary:
             named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]
         if not (named or kin) and phrase.endswith("s") and not phrase.endswith("ss"):
             return self.spot((*without_determiners(words)[:-1], words[-1][:-1]), room)
+        if not (named or kin or room):
+            return self._turned_round(phrase)
         return [Spot(r.name, receptacle=r) for r in named or kin]
+
+    def _turned_round(self, phrase: str) -> list[Spot]:
+        """`tray for deliveries` as the delivery tray, `shelf of books` as the bookshelf."""
+        head, of, tail = re.sub(r" for ", " of ", phrase).partition(" of ")
+        for form, _ in _singulars(" ".join(without_determiners(tuple(tail.split())))) if of else ():
+            form = f"{form[:-2]}y" if form.endswith("ie") else form
+            for name in (f"{form} {head}", f"{form}{head}"):
+                if found := self.spot((*name.split(),)):
+                    return found
+        return []
 
     def _is_in(self, r: Receptacle, room: str) -> bool:
         found = self._household.room_at(r.center[0], r.center[1])

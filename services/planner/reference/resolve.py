@@ -135,6 +135,8 @@ def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     label = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     if phrase.noun.split()[-1] in LIVING:
         raise Refusal("I pick up neither people nor animals, and I do not look for them")
+    if "the" in phrase.anchor[1:]:
+        raise Lost(f"I know no {phrase.text}")  # "my books from the desk the one with the vitamins"
     thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
     spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
     words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation or phrase.which else ""
