@@ -49,6 +49,7 @@ class PlanBuilder:
         self.world, self.vocabulary, self.config, self.choices, self.done = world, vocabulary, config, choices, done
         self.steps: list[PlanStep] = []
         self.last: list[BelievedObject] = []
+        self.told: dict[str, tuple[str, Spot | None]] = {}
         self.spot: Spot | None = None
         self.need = ""
         self.unmet = ""
@@ -61,6 +62,7 @@ class PlanBuilder:
         """A copy to try something on; its choices count only when it is adopted."""
         other = PlanBuilder(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
+        other.told = dict(self.told)
         other.need, other.unmet = self.need, self.unmet
         other.moved, other.leaving = self.moved, self.leaving
         other._found, other.effort = set(self._found), self.effort
@@ -69,6 +71,7 @@ class PlanBuilder:
 
     def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
+        self.told = other.told
         self.moved, self.leaving = other.moved, other.leaving
         self._found, self.collecting = other._found, other.collecting
         self.choices.taken, self.need, self.unmet = other.choices.taken, other.need, other.unmet

@@ -3,6 +3,7 @@
 from common.language.pattern import Slots
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
+from services.planner.reference.pronouns import speak_of
 from services.planner.reference.resolve import referents
 
 
@@ -21,9 +22,9 @@ def mention(builder: PlanBuilder, slots: Slots) -> None:
         raise Lost(f"{NOT_UNDERSTOOD} that")
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     try:
-        builder.last = [m.object for m in referents(builder, words)]
+        speak_of(builder, referents(builder, words))
     except Refusal:
-        builder.last = [m.object for m in referents(builder, slots["thing"])]
+        speak_of(builder, referents(builder, slots["thing"]))
 
 
 def untidy(builder: PlanBuilder, slots: Slots) -> None:

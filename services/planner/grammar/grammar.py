@@ -21,7 +21,7 @@ from services.planner.grammar.asides import with_tales_apart, without_asides
 from services.planner.grammar.chunks import chunks
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.guess import Guess, answer, guess
-from services.planner.grammar.mention import note
+from services.planner.grammar.mention import expected, note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.spelling import corrected, renamed
@@ -286,7 +286,8 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
-        if is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following):
+        wanted = is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following)
+        if wanted or expected(words, following):
             note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
             continue
         if number == 0 and names and "it" in following and _VERBS.isdisjoint(words):

@@ -1,19 +1,31 @@
 """What is told before a request, and what "it" and "there" mean by it. Pure."""
 
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 
 from common.language.normalise import DETERMINERS, Words
 from services.planner.grammar.chunks import named
 from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.reference.pronouns import speak_of
 from services.planner.reference.resolve import referents
 
 _PLACED = re.compile(
-    r"\b((?:the|my|a|our) (?:\w+ ){1,3}?)(?:(?:that|which) (?!(?:is|was)\b).+? )?"
-    r"(?:(?:is|are|was|were|lies|stands)(?: still| lying| standing)* )?"
+    r"\b((?:the|my|a|an|our|some|his|her) (?:\w+ ){1,3}?)(?:(?:that|which) (?!(?:is|was)\b).+? )?"
+    r"(?:(?:is|are|was|were|lies|stands|(?:should|must|might|may|could|will)(?: still)? be)"
+    r"(?: still| lying| standing| probably| likely| supposed to be| usually| normally)* )?"
     r"(?:on|in|at) (.+)$"
 )
 """A thing, and where it is said to be."""
+
+_EXPECTED = re.compile(
+    r"\b(?:(?:should|must|might|may|could|will|ought to)(?: still| probably)? be|"
+    r"(?:is|are) (?:probably|likely|usually))(?: \w+)? (?:on|in|at|by) "
+)
+"""Where something is believed to be, unless it is said to be brought there."""
+
+_ASKING = frozenset({"bring", "get", "fetch", "grab", "give", "hand", "pass", "pick", "take", "go", "find"})
+"""Verbs that ask for a thing."""
 
 _WHEN = re.compile(
     r" (?:earlier(?: on)?|yesterday|before|(?:earlier )?today|just now|"
@@ -21,6 +33,15 @@ _WHEN = re.compile(
     r"this (?:morning|afternoon|evening)|again|somewhere|i (?:think|believe|guess))$"
 )
 """What is said behind a place and is no part of it."""
+
+
+def expected(words: Words, following: Sequence[str]) -> bool:
+    """Do the words tell where a thing is believed to be, which is then asked for?
+
+    "The mug should be on the desk, bring it here" asks for one way, "the mug should be on the desk" for another.
+    """
+    asked = bool(following) and following[0] in _ASKING and not {"it", "them", "those", "that"}.isdisjoint(following)
+    return asked and "there" not in following and _EXPECTED.search(" ".join(words)) is not None
 
 
 def note(words: Words, builder: PlanBuilder) -> None:
@@ -31,15 +52,21 @@ def note(words: Words, builder: PlanBuilder) -> None:
     ):
         if words[at:] and words[at] in DETERMINERS:
             with suppress(Refusal):
-                builder.last = [m.object for m in referents(builder, words[at:])]
+                speak_of(builder, referents(builder, words[at:]))
                 return
     if placed := _PLACED.search(_WHEN.sub("", " ".join(words))):  # "my mug is on the desk"
         with suppress(Refusal):
-            builder.last = [m.object for m in referents(builder, (*placed[1].split(), "on", *placed[2].split()))]
+            speak_of(builder, referents(builder, (*placed[1].split(), "on", *placed[2].split())))
             return
     things, spots = named(words, builder.vocabulary)
-    if things:
+    if things and not (words[:1] == ("there",) and _goes_on(things[-1], words, builder)):
         with suppress(Refusal):
-            builder.last = [m.object for m in referents(builder, tuple(things[-1].split()))]
+            speak_of(builder, referents(builder, tuple(things[-1].split())))
     if spots:
         builder.spot = builder.vocabulary.spot(tuple(spots[-1].split()))[0]
+
+
+def _goes_on(thing: str, words: Words, builder: PlanBuilder) -> bool:
+    """Is a thing's name but the beginning of one that nobody has listed, as `toy` of `toy helicopter`?"""
+    behind = " ".join(words).partition(thing)[2].split()[:1]
+    return bool(behind) and builder.vocabulary.unlisted((*thing.split()[-1:], *behind)) is not None

@@ -28,6 +28,7 @@ _SMALL = (
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
     " today tonight never ever always others"
     " about around through across along against during yourself self"
+    " think believe guess suppose reckon hope know remember"
     " lot goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 LIVING = frozenset(

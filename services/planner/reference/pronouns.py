@@ -15,9 +15,16 @@ class Referent(msgspec.Struct, frozen=True):
     at: Spot | None = None
 
 
+def speak_of(builder: PlanBuilder, meant: list[Referent]) -> None:
+    """What is told of things: `it` is one of them from now on, and is looked for by the same words and place."""
+    builder.last = [m.object for m in meant]
+    builder.told |= {m.object.label: (m.words, m.at) for m in meant}
+
+
 def pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
     if builder.last:
-        return [Referent(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
+        meant = [builder.world.current(t) for t in (builder.last if plural else builder.last[-1:])]
+        return [Referent(t, *builder.told.get(t.label, ("", None))) for t in meant]
     if held := builder.world.held:
         return [Referent(held)]
     if before := handled_before(builder):
