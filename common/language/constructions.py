@@ -83,7 +83,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP}(?: and that)? is where (?:i|we) {_WANT} {NP}", r"put \2 on \1"),
         (rf"(?:make sure|see to it|see|ensure)(?: that)? there is {NP} ({TO_PLACE}) {NP}", r"put \1 \2 \3"),
         # For somebody else than the speaker: there is one place to bring things to.
-        (rf"(?:bring|give|fetch|hand|pass|get) (?:your |my |our |old )*{FAMILY.replace(' ', '').replace('(', '(?:')} "
+        (rf"(?:bring|fetch|get) (?:your |my |our |old )*{FAMILY.replace(' ', '').replace('(', '(?:')} "
          r"((?:the|that|a|an|some|his|her|my) .+)", r"bring me \1"),
         # What would be welcome.
         (rf"{NP} (?:would|will) (?:really |just )?(?:help(?: me)?(?: out)?|hit the spot|go down well|make my day|be "

@@ -252,7 +252,8 @@ class Vocabulary:
     def _turned_round(self, phrase: str) -> list[Spot]:
         """`tray for deliveries` as the delivery tray, `shelf of books` as the bookshelf."""
         head, of, tail = re.sub(r" for ", " of ", phrase).partition(" of ")
-        for form, _ in _singulars(" ".join(without_determiners(tuple(tail.split())))) if of else ():
+        of_what = " ".join(without_determiners(tuple(tail.split())))
+        for form, _ in _singulars(of_what) if of and of_what else ():
             form = f"{form[:-2]}y" if form.endswith("ie") else form
             for name in (f"{form} {head}", f"{form}{head}"):
                 if found := self.spot((*name.split(),)):
