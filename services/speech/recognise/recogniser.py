@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
 Scope = Literal["command", "woken", "interrupt"]
+CLEAR = 0.9
+"""Certainty of a transcription from which no other is looked for. Chosen: of 40 everyday sentences, quiet or among
+voices, none came to anything else, at two thirds of the CPU time where it was quiet."""
 PACES = (16 / 15, 15 / 16)
 """Factors of speed for the second scoring. Chosen: a semitone up and down, far less than voices differ."""
 
@@ -115,7 +118,7 @@ class Recogniser:
             return Recognition("", "ask", confidence, rest, certainty)
         heard = Recognition(command.text, verdict, confidence, rest, certainty, mistaken)
         known = not rest or (verdict == "accept" and normalise(rest) == command.text)
-        if scope == "interrupt" or mistaken or known:
+        if scope == "interrupt" or mistaken or known or certainty >= CLEAR:
             return heard
         return self._among_others(heard, self._model.freely(encoded), score_again, scope == "woken")
 
