@@ -278,6 +278,12 @@ def _sentences(command: str, builder: PlanBuilder) -> list[str]:
     return sentences
 
 
+def _tells(words: Words, following: Sequence[str]) -> bool:
+    """Is a clause only about a thing that the `following` one asks for? "I want the apple. Put it on the desk"."""
+    wanted = words[0] in ("i", "we") and is_statement(" ".join(words)) and {"it", "them"} & set(following)
+    return bool(wanted) or expected(words, following)
+
+
 def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     sentences = _sentences(command, builder)
     first = read(tuple(sentences[0].split()), builder.vocabulary)
@@ -286,11 +292,7 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
-        wanted = is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following)
-        if wanted or expected(words, following):
-            note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
-            continue
-        if number == 0 and names and "it" in following and _VERBS.isdisjoint(words):
+        if _tells(words, following) or (number == 0 and names and "it" in following and _VERBS.isdisjoint(words)):
             note(words, builder)  # "the red can, bin it"
             continue
         if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
