@@ -169,6 +169,11 @@ def test_a_handle_is_no_body_whose_shape_was_measured(width: float, certain: boo
     assert judge(Grip(width, 25.0), 0.071, width, CONFIG, 0.010, certain) == code
 
 
+def test_pads_that_rest_on_each_other_hold_nothing_however_doubtful_the_measure() -> None:
+    assert judge(Grip(0.0029, 25.0), 0.02, 0.0029, CONFIG, 0.028) == "SLIPPED"
+    assert judge(Grip(0.0029, 25.0), 0.004, 0.0029, CONFIG, 0.028) == "", "a card is as thin"
+
+
 @pytest.mark.parametrize(
     ("kind", "nominal", "width", "bad"),
     [

@@ -22,6 +22,8 @@ narrow as its chord there."""
 CHANGED = 0.4
 """Share of a width that was read off an incomplete surface which is felt at least. Chosen: half seen it may be thought
 twice as wide."""
+CLOSED = 0.0035
+"""Width [m] up to which the pads may be on each other (measured: they read 2.9 mm where they met askew)."""
 TURNING = 0.012
 """By how much less [m] something may be held than when the fingers closed, once it has turned its narrow side to them.
 Chosen: ovals of a hand's width are 6 to 10 mm wider than deep; what slips out goes on."""
@@ -68,7 +70,7 @@ def settled(grip: Grip, at_close: float, config: ManipulationConfig) -> float:
 def least_width(nominal: float, doubt: float, certain: bool) -> float:
     """Least width [m] between pads that are on the body of something `nominal` wide there, and not on its handle."""
     if not certain:
-        return CHANGED * (nominal - doubt)
+        return max(CHANGED * (nominal - doubt), min(CLOSED, CHANGED * nominal))
     return 2 * math.sqrt(max(0.0, (nominal / 2) ** 2 - OFF_CENTRE**2)) - doubt
 
 
