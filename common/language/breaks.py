@@ -48,27 +48,11 @@ _SUBJECTS = frozenset(
     }
 )  # fmt: skip
 """Words with which somebody begins to tell something, beside articles."""
-_DONE = frozenset(
-    [
-        "left",
-        "lost",
-        "gone",
-        "got",
-        "put",
-        "taken",
-        "come",
-        "run",
-        "forgotten",
-        "broken",
-        "spilt",
-        "eaten",
-        "hidden",
-        "fallen",
-        "made",
-        "had",
-        "been",
-    ]
-)
+_DONE = frozenset({
+    "left", "lost", "gone", "got", "put", "taken", "come", "run", "forgotten", "broken", "spilt", "eaten", "hidden",
+    "fallen", "made", "had", "been",
+})  # fmt: skip
+"""Participles without -ed, by which `has` tells what was done."""
 _ANSWER = re.compile(r"^(?:no|nope|yes|yeah|well),\s+")
 _NO_STATEMENT = re.compile(
     r"^(?:if|unless|when|whenever|in case|should|suppose|supposing|imagine|pretend|assume|what|who|why|where|how|"

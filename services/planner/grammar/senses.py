@@ -16,7 +16,7 @@ SHORTEST_NAME = 3
 LONGEST_NAME = 4
 """Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
 _SMALL = (
-    "them theirs someone anyone anybody everyone everybody mine yours itself themselves myself himself herself "
+    "them theirs someone anyone anybody everyone everybody mine yours itself myself himself herself "
     "ourselves themselves "
     "all and anything are as at away back be been before behind below both but by can could did do "
     "does down each every"
