@@ -33,16 +33,19 @@ OFF_COLOUR = 0.7
 """What is left of the likeness of what has not the colour of what it is made of. Chosen: not asked about at once."""
 SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
 """Kinds that have no shape of their own, and the likeness of anything to them. Chosen: asked about when it is seen."""
+SHAPED = 0.5
+"""That likeness by how unlike an object is to kinds that have a shape. Chosen: what is a mug to four tenths and more is
+asked about as a tool when all else was looked at."""
 NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
 """Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
 the shape of none. Chosen: rarely right."""
 BLANK, BLANK_SPREAD = 0.06, 0.03
-"""Likeness of a pack without print to a name that says nothing of looks, and how much more it is of what has the shape
-of no kind: who means a can says so. Chosen: asked about after all else."""
-PACKS = frozenset({"bottle", "can", "jar", "cup", "box", "carton", "block", "book", "tool", "toy", OTHER})
-"""Kinds that go by another name than their kind: by what is in them, or by what they are for."""
+"""Likeness of anything without print to a name that says nothing of looks, and how much more it is of what has the
+shape of no kind: who means a can says so. Chosen: asked about after all else."""
 FLAVOURS = frozenset({"apple", "orange", "lemon", "banana"})
-"""Kinds that say what is in a pack when they stand before another word."""
+"""Kinds that say what is in a pack when they stand before another word, and that go by no other word than their own."""
+MOSTLY = 0.5
+"""Share of the fruits among what an object may be from which it goes by no other word. Chosen: as likely as not."""
 HIDDEN = 0.5
 """Likeness of a ball that looks more like what stands on a foot, or the other way, by that of what it looks like."""
 TAKEN_FOR = (
@@ -73,12 +76,13 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     """
     wanted, told = normalise(phrase), household.words
     known, fit = _known(wanted, o, household), looks_like(phrase, o, household)
-    if known.rest and not known.any and not known.rest & (told.looks.keys() | set(told.qualities)):
+    named, printed = known.rest & told.looks.keys(), other_goods(wanted, o.text, household)
+    # The last word says what it is, those before it which one: a tape measure is no tape.
+    before = named if _told_looks(wanted, household) else set()
+    if known.rest - set(told.qualities) and not known.any and not before:
         return _unnamed(o)
     untold = known.rest - {*told.qualities, *told.looks, *told.shades}
-    # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
-    named, printed = known.rest & told.looks.keys(), other_goods(wanted, o.text, household)
     if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and printed and not named):
         return 0.0
     # What has other words printed on it is hardly the soap.
@@ -104,10 +108,19 @@ def _of_another_flavour(wanted: str, o: WorldObject, household: Household) -> bo
 
 
 def _unnamed(o: WorldObject) -> float:
-    """How well an object fits a name that says nothing of looks: 0 for what has print, or goes by its kind."""
-    shares = o.kind_shares or {o.kind: 1.0}
-    shaped = max((share for kind, share in shares.items() if kind not in {*SHAPELESS, OTHER}), default=0.0)
-    return 0.0 if telling(o.text) or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - shaped)
+    """How well an object fits a name that says nothing of looks: 0 for what has print, or is a fruit."""
+    fruit = sum(share for kind, share in _shares(o).items() if kind in FLAVOURS)
+    return 0.0 if telling(o.text) or fruit >= MOSTLY else BLANK + BLANK_SPREAD * (1.0 - _shaped(o))
+
+
+def _shaped(o: WorldObject) -> float:
+    """How likely an object is of the likeliest kind that has a shape of its own."""
+    return max((share for kind, share in _shares(o).items() if kind not in {*SHAPELESS, OTHER}), default=0.0)
+
+
+def _shares(o: WorldObject) -> dict[str, float]:
+    """How likely an object is of each kind that it may be."""
+    return o.kind_shares or {o.kind: 1.0}
 
 
 def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool = False) -> float:
@@ -129,8 +142,10 @@ def _told_looks(wanted: str, household: Household) -> tuple[str, ...]:
 def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
     """How well an object fits one of the kinds among the words, in one of the colours among them unless `packed`."""
     kinds, shades = [w for w in words if w in KINDS], [w for w in words if w in ALIKE and w not in KINDS]
-    # What has any shape is told by its colour, or not at all.
-    kind = max((_has_kind(k, o) for k in kinds if shades or k not in SHAPELESS or k in o.kinds), default=0.0)
+    # What has any shape is told by its colour; without one, all but what may be of that kind is asked about at last.
+    unlike = NO_KIND - (NO_KIND - ROUGHLY) * _shaped(o)
+    seen = {*kinds} if shades else {k for k in kinds if k not in SHAPELESS or k in o.kinds}
+    kind = max((_has_kind(k, o) if k in seen else unlike for k in kinds), default=0.0)
     return kind if packed else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
 
 
@@ -196,7 +211,8 @@ def _has_kind(kind: str, o: WorldObject) -> float:
     has = shares.get(kind, 0.0) / best
     if o.kind_shares and kind != o.kind:
         has = min(has, NOT_CALLED)
-    return max(has, NEAR_KIND * near, NO_KIND * (o.kind == OTHER), ANY_SHAPE * (kind in SHAPELESS))
+    shapeless = max(NO_KIND, min(ANY_SHAPE, SHAPED * (1.0 - _shaped(o)))) if kind in SHAPELESS else 0.0
+    return max(has, NEAR_KIND * near, NO_KIND * (o.kind == OTHER), shapeless)
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:

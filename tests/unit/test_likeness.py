@@ -135,6 +135,32 @@ def test_a_name_that_says_nothing_of_looks_may_be_any_pack_without_print() -> No
     assert partly("gizmo", plain, HOUSEHOLD) == 0.0, "it says what it is"
 
 
+@pytest.mark.parametrize("words", ["giraffe", "tape measure", "my old giraffe", "soap dish"])
+def test_what_looks_like_no_kind_is_asked_about_first_under_an_unknown_name(words: str) -> None:
+    mug, book = measured("white mug", {"mug": 0.9, "cup": 0.1}, {"white": 1.0}), measured("red book", {"book": 1.0}, {})
+    odd = measured("orange banana", {"banana": 0.25, "tool": 0.25, "box": 0.2, "toy": 0.2}, {"orange": 1.0})
+    assert partly(words, odd, HOUSEHOLD) > partly(words, mug, HOUSEHOLD) >= LEAST
+    assert partly(words, odd, HOUSEHOLD) > partly(words, book, HOUSEHOLD) >= LEAST
+    assert partly(words, APPLE, HOUSEHOLD) == 0.0
+
+
+def test_what_is_plainly_of_a_kind_is_asked_about_late_as_a_tool() -> None:
+    mug = measured("white mug", {"mug": 0.9, "cup": 0.1}, {"white": 1.0})
+    box = measured("white box", {"box": 0.3, "block": 0.3, "book": 0.3}, {"white": 1.0})
+    odd = measured("white box", {"box": 0.3, "block": 0.3, "tool": 0.3}, {"white": 1.0})
+    fits = [partly("spatula", o, HOUSEHOLD) for o in (mug, box, odd)]
+    assert LEAST <= fits[0] < fits[1] < LIKELY <= fits[2]
+
+
+def test_a_ball_of_wool_is_a_ball() -> None:
+    ball = measured("pink ball", {"ball": 0.6, "can": 0.4}, {"pink": 1.0})
+    can = measured("pink can", {"can": 1.0}, {"pink": 1.0})
+    phrase = parsed("the ball of wool from the desk", HOUSEHOLD, {})
+    assert (phrase.thing, phrase.place) == ("wool ball", "desk")
+    (first,) = possible(phrase, [can, ball], HOUSEHOLD)
+    assert first.label == "pink ball" and first.likeness >= LIKELY
+
+
 def test_what_has_the_shape_of_no_kind_may_be_of_any() -> None:
     odd = measured("white thing", {"thing": 0.6, "bottle": 0.4}, {"white": 1.0})
     assert LEAST <= likeness("white mug", odd, HOUSEHOLD) < LIKELY
