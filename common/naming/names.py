@@ -24,9 +24,13 @@ ALIKE = {
 """Words that a colour may turn out to have from nearer and in better light."""
 
 
+_OF = re.compile(rf"\b({'|'.join(KINDS)}) of (?:(?:the|a|an|my|some) )?(\w+)\b")
+"""A kind before what it is of: it is the last word otherwise."""
+
+
 def normalise(text: str) -> str:
-    """Lower case, no punctuation, no articles."""
-    words = re.sub(r"[^a-z0-9 ]+", " ", text.lower()).split()
+    """Lower case, no punctuation, no articles, the word for the kind last: a ball of wool is a "wool ball"."""
+    words = _OF.sub(r"\2 \1", re.sub(r"[^a-z0-9 ]+", " ", text.lower())).split()
     return " ".join(w for w in words if w not in _FILLER)
 
 
