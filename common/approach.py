@@ -25,8 +25,11 @@ HANDED, BEFORE = 0.65, math.radians(45)
 from the robot's home: the arm reaches 0.1 m farther, without a step aside."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20, 0.30, -0.30)
 """Steps aside [m] from straight before the object: beside a corner or a bin only the farthest may have room."""
-RING = 16
-"""Candidates around an object [count]: one every 22.5 degrees."""
+RING, FARTHER = 16, (0.0, 0.1, 0.2)
+"""Candidates around an object [count], one every 22.5 degrees, and how much farther away others are [m]: what lies on a
+sofa or a bed may be too far behind its edge for the nearest. Chosen: the arm reaches 0.2 beyond the stand-off."""
+TOLERANCE, DISTANCE_COST = 0.04, 4.0
+"""Distance beyond the stand-off that costs nothing [m], and what more costs [m/m]."""
 
 
 def poses_for(
@@ -37,14 +40,16 @@ def poses_for(
 ) -> list[tuple[float, Pose2]]:
     """Candidate base poses that face `target`, each with a penalty [m] for how far from ideal it is.
 
-    On a receptacle the base stands before one of its free edges, `edge_distance` off it at least; elsewhere on a ring.
+    On a receptacle the base stands before one of its free edges, `edge_distance` off it at least; elsewhere on rings.
     """
     x, y = target
     found: list[tuple[float, Pose2]] = []
     if receptacle is None or not receptacle.approach:
-        for k in range(RING):
-            a = 2 * math.pi * k / RING
-            found.append((0.0, (x - stand_off * math.cos(a), y - stand_off * math.sin(a), a)))
+        for away in FARTHER:
+            distance, penalty = stand_off + away, DISTANCE_COST * max(0.0, away - TOLERANCE)
+            for k in range(RING):
+                a = 2 * math.pi * k / RING
+                found.append((penalty, (x - distance * math.cos(a), y - distance * math.sin(a), a)))
         return found
     outline = receptacle.outline
     lx, ly = outline.to_local(x, y)
@@ -57,8 +62,8 @@ def poses_for(
         for side in LATERAL:
             bx, by = x + ux * distance - uy * side, y + uy * distance + ux * side
             theta = math.atan2(y - by, x - bx)
-            far = max(0.0, math.hypot(distance, side) - stand_off - 0.04)
-            found.append((4.0 * far + 1.5 * abs(side), (bx, by, theta)))
+            far = max(0.0, math.hypot(distance, side) - stand_off - TOLERANCE)
+            found.append((DISTANCE_COST * far + 1.5 * abs(side), (bx, by, theta)))
     return found
 
 

@@ -87,6 +87,17 @@ def test_every_object_has_a_stand_that_is_free_reachable_and_close(
             assert abs(math.remainder(bearing - s[2], 2 * math.pi)) < 0.01, "the robot faces the object"
 
 
+def test_what_lies_behind_the_edge_of_a_sofa_is_approached_from_where_there_is_floor(
+    planner: tuple[Costmap, PathPlanner],
+) -> None:
+    seat = next(f for f in SCENE.furniture if f.name == "sofa seat")
+    x, y = seat.center[0] + seat.size[0] / 2 - 0.24, seat.center[1] + 0.4
+    stands = poses_for((x, y), None, CONFIG.stand_off, CONFIG.edge_distance)
+    free = [(penalty, s) for penalty, s in stands if planner[1].free(s[0], s[1])]
+    assert free
+    assert min(penalty for penalty, _ in stands) == 0.0 < min(free)[0], "nearer is better, where it is possible"
+
+
 @pytest.mark.parametrize(
     ("home", "expected"), [((0.0, 0.0, 0.0), True), ((0.0, 0.0, 1.6), False), ((-0.3, 0.0, 0.0), False)]
 )
