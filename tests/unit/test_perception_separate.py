@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
+from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment, Surface
 from services.perception.segments.separate import pieces
 from services.perception.views.view import View
@@ -85,6 +86,42 @@ def test_a_crowd_wider_than_any_object_is_its_objects() -> None:
     assert len(found) == 3
     for x, y, *_ in cans:
         assert min(math.dist(at, (x, y)) for at in found) < 0.02
+
+
+def rod(colours: list[tuple[int, int, int]], widths: list[float]) -> tuple[View, Segment]:
+    """What lies across the view, 0.2 m long: a half cylinder of pieces of those colours and widths, end to end."""
+    h = w = 200
+    u, v = np.meshgrid(np.arange(w) + 0.5 - w / 2, np.arange(h) + 0.5 - h / 2)
+    rays = np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
+    depth, rgb = np.full((h, w), np.inf), np.zeros((h, w, 3), np.uint8)
+    for n, (colour, radius) in enumerate(zip(colours, widths, strict=True)):
+        length = 0.2 / len(colours)
+        a = rays[..., 0] ** 2 + rays[..., 2] ** 2
+        x, z = 1.0, FLOOR + 0.02 - EYE[2]
+        b = rays[..., 0] * x + rays[..., 2] * z
+        with np.errstate(invalid="ignore"):
+            far = (b - np.sqrt(b * b - a * (x * x + z * z - radius * radius))) / a
+        along = far * rays[..., 1] + 0.1 - n * length
+        hit = (along > 0) & (along < length) & (far < depth) & (EYE[2] + far * rays[..., 2] > FLOOR)
+        depth[hit], rgb[hit] = far[hit], colour
+    seen = np.isfinite(depth)
+    rng = np.random.default_rng(1)
+    depth[seen] *= 1 + rng.normal(0.0, 0.0015, np.count_nonzero(seen))
+    depth[~seen] = 0.0
+    view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (w / 2, h / 2), EYE, rotation())
+    rows, columns = np.nonzero(seen)
+    points = view.points[rows, columns].astype(np.float64)
+    return view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True))
+
+
+def test_a_surface_that_runs_on_is_one_whatever_is_printed_on_it() -> None:
+    view, whole = rod([GREEN, (240, 240, 235), GREEN], [0.03, 0.03, 0.03])
+    cut = (whole.points[:, 1] > 0.033).astype(np.intp) + (whole.points[:, 1] > -0.033)
+    assert unseamed(view, whole, cut, 0.0015) is None
+    view, stepped = rod([GREEN, RED], [0.02, 0.045])
+    cut = (stepped.points[:, 1] > 0.0).astype(np.intp)
+    assert unseamed(view, stepped, cut, 0.0015) is not None
+    assert unseamed(view, whole, cut[: len(whole.rows)], 0.01) is not None, "noise hides whether it does"
 
 
 def test_what_is_wider_than_any_object_and_of_one_piece_is_none() -> None:

@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from common.geometry import Array, Rectangle
 from services.perception.segments.air import hangs
+from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
 from services.perception.shapes.measurement import Measurement
@@ -80,7 +81,11 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     noise = noise_of(view, segment)
     if again == 0 or len(segment.rows) < 2 * MIN_PIXELS or whole.shape.residual < FINE + FINE_NOISE * noise:
         return [whole]
-    for cut in (by_colour(view, segment), by_valley(view, segment)):
+    coloured = by_colour(view, segment)
+    for cut in (
+        unseamed(view, segment, coloured, noise) if coloured is not None else None,
+        by_valley(view, segment),
+    ):
         if cut is None:
             continue
         cuts = _cut(segment, cut)
