@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from common.floor_plan import Box
-from common.household import load_household
+from common.floor_plan import Box, Receptacle
+from common.household import Household, load_household
 from services.camera.sensor import StereoCamera
 from services.perception.segments.segmentation import segments
 from services.perception.views.view import View
@@ -23,15 +23,15 @@ PLACE = np.array([-0.5, -1.2, 1.3])
 RUG = Box(name="rug", center=(PLACE[0] + 0.35, PLACE[1] + 1.1, 0.008), size=(0.5, 0.6, 0.016))
 
 
-def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = ()) -> View:
-    """The floor, and on it 1.2 m ahead a cube of `box` [m], as a camera sees them that is off by its mount's error."""
+def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = (), ahead: float = 1.2) -> View:
+    """The floor, and `ahead` [m] on it a cube of `box` [m], as a camera sees them that is off by its mount's error."""
     camera = StereoCamera(seed)
     turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
     u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
     rays = np.stack([u, v, np.ones_like(u)], axis=-1) @ turned.T
     depth = np.where(rays[..., 2] < -0.05, -PLACE[2] / np.minimum(rays[..., 2], -0.05), 0.0)
     top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
-    on_top = np.abs(rays[..., :2] * top[..., None] - np.array([1.2, 0.0])).max(axis=-1) < box / 2
+    on_top = np.abs(rays[..., :2] * top[..., None] - np.array([ahead, 0.0])).max(axis=-1) < box / 2
     depth[on_top] = top[on_top]
     for rug in rugs:
         top = (rug.top - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
@@ -48,11 +48,12 @@ def test_an_empty_floor_is_empty(seed: int) -> None:
     assert segments(floor(seed), SCENE, 3.5) == []
 
 
+@pytest.mark.parametrize("ahead", [1.2, 2.3])
 @pytest.mark.parametrize("seed", range(3))
-def test_a_block_on_the_floor_is_one_object(seed: int) -> None:
-    (found,) = segments(floor(seed, 0.06), SCENE, 3.5)
+def test_a_block_on_the_floor_is_one_object(seed: int, ahead: float) -> None:
+    (found,) = segments(floor(seed, 0.06, ahead=ahead), SCENE, 3.5)
     assert found.surface.name == ""
-    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + ahead, PLACE[1])) < 0.03
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -76,3 +77,37 @@ def test_objects_are_looked_for_on_beds_and_seats_and_not_where_a_back_stands_on
     assert not {"wardrobe", "fridge"} & set(tops)
     assert any(box.contains(-2.84, 0.2) for box in tops["sofa seat"]), "the sofa's back"
     assert not any(box.contains(-2.3, 0.2) for box in tops["sofa seat"])
+
+
+TOP = 0.72
+"""Height [m] of a table below the camera."""
+
+
+def table(seed: int, thick: float, level: int = 120) -> View:
+    """A table top, and on it 0.7 m ahead a ruler of that thickness [m], of `level` (of 255) in brightness."""
+    camera = StereoCamera(seed)
+    turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
+    u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
+    rays = np.stack([u, v, np.ones_like(u)], axis=-1) @ turned.T
+    down = np.minimum(rays[..., 2], -0.05)
+    depth, rgb = (TOP - PLACE[2]) / down, np.full((HEIGHT, WIDTH, 3), level, np.uint8)
+    on_top = (TOP + thick - PLACE[2]) / down
+    ruler = (np.abs(rays[..., :2] * on_top[..., None] - (0.7, 0.0)) < (0.02, 0.09)).all(axis=-1)
+    depth[ruler], rgb[ruler] = on_top[ruler], (level, level // 3, level // 3)
+    taken = camera.expose(rgb, depth, FOCAL, seed)
+    measured = (taken.depth / 1000.0).astype(np.float32)
+    return View(taken.rgb, measured, (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), PLACE, DOWN)
+
+
+def with_a_table() -> Household:
+    top = Receptacle(name="table", kind="table", center=(PLACE[0] + 0.75, PLACE[1], TOP), size=(0.7, 1.2))
+    return msgspec.structs.replace(SCENE, receptacles=(top,))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("level", [120, 25])
+def test_a_ruler_on_a_table_is_an_object_and_what_is_printed_there_is_none(seed: int, level: int) -> None:
+    assert segments(table(seed, 0.0, level), with_a_table(), 3.5) == []
+    if level == 120:
+        (found,) = segments(table(seed, 0.005), with_a_table(), 3.5)
+        assert np.ptp(found.points[:, 1]) == pytest.approx(0.18, abs=0.02)

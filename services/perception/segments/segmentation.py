@@ -8,6 +8,7 @@ spot are joined again.
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.floor_plan import Box, FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
@@ -18,8 +19,9 @@ from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, 
 from services.perception.views.view import Mask, View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
 
-CLEARANCE = 0.008
-"""Height [m] above a surface from which points belong to objects. Chosen: twice the depth noise at 1.5 m."""
+CLEARANCE, THIN = 0.008, 0.003
+"""Height [m] above a surface from which points belong to objects, and above one whose slopes are measured, where noise
+does not reach as high. Chosen: twice the depth noise at 1.5 m; a comb's thickness is 0.004."""
 MAX_HEIGHT = 0.30
 """Height [m] above a surface up to which points belong to objects. Chosen: above the tallest bottle."""
 PLANE_SEARCH = 0.025
@@ -50,11 +52,13 @@ MAX_EXTENT, CROWD_EXTENT = 0.30, 0.60
 """Extents [m] on the floor plan from which a segment is no single object, and from which it is furniture."""
 FAR = 2.3
 """Depth [m] from which its noise makes walls thick."""
-FLOOR_RANGE = 2.2
-"""Distance [m] up to which objects on the floor are looked for. Chosen: beyond it depth noise hides small ones."""
+FLOOR_RANGE = 3.0
+"""Distance [m] up to which objects on the floor are looked for. Chosen: 25 mm over it stand out of the noise there."""
 DEVIATIONS = 4.0
 """Standard deviations of height above the floor that are no object: it covers a thousand times the area of the noise's
 bumps, of which one in a thousand is beyond three."""
+ONE_DEVIATION = 68.3
+"""Percentile of the distances from a plane that is one standard deviation of normal noise."""
 FLOOR_SAMPLE = 11
 """Every which pixel of the floor its plane is fitted to."""
 
@@ -143,11 +147,11 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
 
 def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:
     """Pieces above one surface, whose plane is measured where enough of it is visible."""
-    plane = _plane(cloud, expected)
+    plane, least, rough = _plane(view, cloud, expected)
     outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
-    noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - expected.height) * view.depth.ravel()[cloud.pixels]
-    over = (cloud.z > height + np.maximum(noise, CLEARANCE)) & (cloud.z < height + MAX_HEIGHT)
+    noise = DEVIATIONS * rough * _noise(view, cloud, expected)
+    over = (cloud.z > height + np.maximum(noise, least)) & (cloud.z < height + MAX_HEIGHT)
     kept = cloud.kept(over).outside(near.walls)
     far = view.depth.ravel()[kept.pixels] > FAR
     beyond = kept.kept(far).outside(near.far_walls).pixels
@@ -167,32 +171,42 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     return whole + [p for p in left if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
 
 
-def _plane(cloud: Cloud, expected: Surface) -> Array:
+def _noise(view: View, cloud: Cloud, surface: Surface) -> NDArray[np.float32]:
+    """Standard deviation (n,) [m] of the heights of a surface's pixels."""
+    return DEPTH_NOISE * (float(view.position[2]) - surface.height) * view.depth.ravel()[cloud.pixels]
+
+
+def _plane(view: View, cloud: Cloud, expected: Surface) -> tuple[Array, float, float]:
     """Slopes and height (3,) of a surface: z = a x + b y + c, as it is seen, or as it is expected where it is not.
 
+    And the height [m] above it from which points belong to objects, and its noise by the camera's (what is dark has
+    more).
     A camera that is tilted by 0.3 degrees more than it is believed to be sees a counter of 2 m rise by 10 mm.
     """
     level = np.array([0.0, 0.0, expected.height])
     near = np.abs(cloud.z - expected.height) < PLANE_SEARCH
     if not expected.name or np.count_nonzero(near) < MIN_PLANE:
-        return level
+        return level, CLEARANCE, 1.0
     x, y, z = (axis[near].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
     counts, edges = np.histogram(z, bins=25)
     peak = int(counts.argmax())
     close = np.abs(z - (edges[peak] + edges[peak + 1]) / 2) < PEAK
     level[2] = float(np.median(z[close]))
     if np.count_nonzero(close) < TILTED_PLANE:
-        return level
+        return level, CLEARANCE, 1.0
     step = max(1, len(x) // PLANE_SAMPLE)
     rows = np.stack([x, y, np.ones_like(x)], axis=1)[::step]
     heights, close = z[::step], (np.abs(z - level[2]) < 2 * PEAK)[::step]
     plane = level
     for _ in range(3):
         if np.count_nonzero(close) < MIN_PLANE:
-            return level
+            return level, CLEARANCE, 1.0
         plane = np.asarray(np.linalg.lstsq(rows[close], heights[close], rcond=None)[0], np.float64)
         close = np.abs(heights - rows @ plane) < PEAK
-    return plane if np.hypot(plane[0], plane[1]) < MOST_TILT else level
+    if np.hypot(plane[0], plane[1]) >= MOST_TILT:
+        return level, CLEARANCE, 1.0
+    off = np.abs(heights - rows @ plane)[close] / _noise(view, cloud, expected)[near][::step][close]
+    return plane, THIN, max(1.0, float(np.percentile(off, ONE_DEVIATION)))
 
 
 def _is_thing(segment: Segment) -> bool:

@@ -15,6 +15,8 @@ from services.perception.shapes import lying, oval, primitives, turned
 from services.perception.shapes.measurement import Measurement
 from services.perception.shapes.primitives import Silhouette
 
+THINNEST = 0.003
+"""Least height [m] of an object. Chosen: that of the lowest points which are told from their surface."""
 SAMPLE = 180
 """Points of a segment that are used, evenly spread. Chosen: more only takes longer."""
 IRREGULAR, IRREGULAR_NOISE = 0.003, 0.8
@@ -68,7 +70,7 @@ def measure(
     outline = primitives.silhouette(whole, camera, seen, half_pixel)
     eye = camera - (0.0, 0.0, floor)
     steep = abs(eye[2] - local[:, 2].mean()) / max(1e-3, float(np.linalg.norm(eye - local.mean(axis=0))))
-    h = max(0.008, primitives.top_of(whole, noise * steep))
+    h = max(THINNEST, primitives.top_of(whole, noise * steep))
     shapes = [_box(used, h, outline, noise)]
     _, _, extents, _ = primitives.rectangle(used[:, :2], 12)[0]
     wide, narrow = float(extents.max()), float(extents.min())
