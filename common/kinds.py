@@ -188,7 +188,7 @@ _TABLE = (
     ),
     Kind(
         "book", "box", _ON_FACES, rests=frozenset({"face"}), upright=False, ends_alike=True,
-        look=Look({"box": 1}, (0.008, 0.06), (0.11, 0.36), (2.8, 30.0), (2.2, 25.0)),
+        look=Look({"box": 1}, (0.006, 0.06), (0.11, 0.36), (2.8, 50.0), (2.2, 40.0), (1.0, 2.2)),
     ),
     Kind(
         "plate", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), _plate, upright=False,
@@ -215,7 +215,7 @@ _TABLE = (
     ),
     Kind(
         "tool", "box", _ON_FACES, upright=False,
-        look=Look({"long": 0.7, "irregular": 0.8, "box": 0.2}, (0.006, 0.07), (0.09, 0.42), (3.2, 50.0), neck=(1, 1)),
+        look=Look({"long": 0.7, "irregular": 0.8, "box": 0.2}, (0.003, 0.07), (0.09, 0.42), (3.2, 80.0), neck=(1, 1)),
     ),
 )  # fmt: skip
 KINDS = {kind.name: kind for kind in _TABLE}

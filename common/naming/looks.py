@@ -45,7 +45,8 @@ class Measures:
 class Look:
     """Ranges of a kind's measures. `families`: likelihood of each; pairs: likelihood when it was seen, and when not.
 
-    `slim`: `along` by `across` [-]; `colours`: words of which one must be seen, none for any; `share`: how common.
+    `slim`: `along` by `across`, `oblong`: by the third extent [-]; `colours`: words of which one must be seen, none for
+    any; `share`: how common.
     """
 
     families: Mapping[ShapeFamily, float]
@@ -53,6 +54,7 @@ class Look:
     along: Range
     slim: Range = ANY
     middle: Range = ANY
+    oblong: Range = ANY
     hollow: tuple[float, float] = (0.05, 1.0)
     neck: tuple[float, float] = (0.05, 1.0)
     handle: tuple[float, float] = (0.1, 1.0)
@@ -74,7 +76,10 @@ class Look:
         found = 1.0
         for measured, usual in ((m.across, self.across), (m.along, self.along), (m.along / m.across, self.slim)):
             found *= _within(measured, usual, OUTSIDE + doubt)
-        return found * _within(m.middle, self.middle, OUTSIDE + doubt) if m.family == "box" else found
+        if m.family != "box":
+            return found
+        oblong = m.along / (m.across * m.middle)
+        return found * _within(m.middle, self.middle, OUTSIDE + doubt) * _within(oblong, self.oblong, OUTSIDE + doubt)
 
 
 def _within(value: float, usual: Range, deviation: float) -> float:
