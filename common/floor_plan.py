@@ -29,6 +29,9 @@ TALLEST = 0.35
 """How far [m] above a surface the centre of what rests on it is looked for: beyond half of the tallest object."""
 ROUNDING = 1e-9
 """What the edge of a room is off by in arithmetic [m]."""
+BACK = 0.10
+"""How much higher [m] what stands on a piece of furniture is than its seat to be its back, over which nothing is taken.
+Chosen: more than a cushion."""
 SIGHTING_ERROR = 0.02
 """How far [m] over the edge of a surface the centre of what rests on it may be seen: the error at arm's length."""
 
@@ -205,6 +208,29 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
     def resting_place(self, position: Vec3) -> Receptacle | None:
         """The receptacle on or in which an object with its centre at `position` [map] was seen to rest."""
         return self.surface_at(*position, margin=SIGHTING_ERROR, above=TALLEST)
+
+    def support_at(self, x: float, y: float) -> Receptacle | None:
+        """What holds a thing at the point (x, y) [map]: a receptacle, else a piece of furniture as one.
+
+        Its free sides are those towards which nothing higher is on it, as the back of a sofa is.
+        """
+        if (surface := self.surface_at(x, y)) is not None:
+            return surface
+        under = [f for f in self.standing if f.outline.contains(x, y)]
+        if not under:
+            return None
+        box = max(under, key=lambda f: f.top)
+        higher = [f.outline for f in self.standing if f.top > box.top + BACK]
+        u, v = box.outline.to_local(x, y)
+        length, width = box.size[0] / 2, box.size[1] / 2
+        edges = {(1, 0): (length, v), (-1, 0): (-length, v), (0, 1): (u, width), (0, -1): (u, -width)}
+        free = tuple(
+            side
+            for side, edge in edges.items()
+            if not any(outline.meets((x, y), box.outline.to_map(*edge)) for outline in higher)
+        )
+        middle = box.center[0], box.center[1], box.top
+        return Receptacle(name=box.name, kind="table", center=middle, size=box.size[:2], yaw=box.yaw, approach=free)
 
     @property
     def standing(self) -> list[Box]:

@@ -83,6 +83,16 @@ class Rectangle(NamedTuple):
         u, v = self.to_local(x, y)
         return math.hypot(max(abs(u) - self.length / 2, 0.0), max(abs(v) - self.width / 2, 0.0))
 
+    def meets(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+        """True when the straight line from one point to the other touches the rectangle; slab method."""
+        a, b = self.to_local(*start), self.to_local(*end)
+        enters, leaves = 0.0, 1.0
+        for from_, to, half in zip(a, b, (self.length / 2, self.width / 2), strict=True):
+            way = to - from_ or 1e-12
+            one, two = sorted(((-half - from_) / way, (half - from_) / way))
+            enters, leaves = max(enters, one), min(leaves, two)
+        return enters <= leaves
+
     def signed_distances(self, x: Array, y: Array) -> Array:
         """Distance [m] of each point from the rectangle's edge, negative within it."""
         u, v = self.to_local(x, y)

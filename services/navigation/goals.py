@@ -69,7 +69,7 @@ class Goals:
         for o in objects:
             if o.label == ref.label and not o.held and math.dist((x, y), o.position[:2]) < SAME:
                 return self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
-        return self._before((x, y), self._household.surface_at(x, y))
+        return self._before((x, y), self._household.support_at(x, y))
 
     def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
         """Before each object that the words can mean; empty when none is known."""

@@ -82,7 +82,7 @@ class Places:
         return (spot.x, spot.y, spot.theta) if spot else None
 
     def receptacle_of(self, o: WorldObject) -> Receptacle | None:
-        """What an object stands on: as reported, else the surface under it."""
-        if o.on:
-            return self._household.receptacle(o.on)
-        return self._household.surface_at(o.position[0], o.position[1])
+        """What an object stands on: as reported, else what is under it; None for the floor."""
+        if o.on == "floor":
+            return None
+        return self._household.receptacle(o.on) or self._household.support_at(o.position[0], o.position[1])

@@ -2,10 +2,12 @@
 
 import math
 
+import msgspec
 import pytest
 
 from common import messages as m
-from common.floor_plan import Place, Receptacle
+from common.approach import EDGE_DISTANCE, poses_for
+from common.floor_plan import Box, Place, Receptacle
 from common.geometry import Rectangle
 from common.household import Household
 from common.robot.grip import Grip, grip_of
@@ -59,6 +61,41 @@ def test_without_a_height_the_surface_is_the_one_over_or_under_the_point() -> No
     assert SCENE.surface_at(*ALONG) is SHELF and SCENE.surface_at(3.0, 0.0) is BIN
     assert SCENE.surface_at(3.165, 0.0) is None and SCENE.surface_at(3.165, 0.0, margin=0.02) is BIN
     assert SCENE.surface_at(*ALONG, 3.0) is SHELF, "a hand high above it"
+
+
+def test_furniture_holds_things_before_every_side_that_no_back_rises_from() -> None:
+    """A sofa turned by a quarter: its own +x is the map's +y, where its back is."""
+    seat = Box(name="seat", center=(2.0, 1.0, 0.21), size=(0.9, 2.0, 0.42), yaw=math.pi / 2)
+    back = Box(name="back", center=(2.0, 1.36, 0.60), size=(0.18, 2.0, 0.40), yaw=math.pi / 2)
+    cushion = Box(name="cushion", center=(1.2, 1.0, 0.46), size=(0.3, 0.3, 0.08))
+    rug = Box(name="rug", center=(2.0, 0.0, 0.005), size=(3.0, 1.0, 0.01))
+    plan = msgspec.structs.replace(SCENE, furniture=(seat, back, cushion, rug), receptacles=())
+    held = plan.support_at(1.7, 0.9)
+    assert held is not None and (held.name, held.center[2], held.outline) == ("seat", 0.42, seat.outline)
+    assert set(held.approach) == {(-1, 0), (0, 1), (0, -1)}
+    on_top = plan.support_at(1.2, 1.0)
+    assert on_top is not None and on_top.name == "cushion", "the highest that is under it"
+    assert plan.support_at(2.0, 0.2) is None, "a rug holds nothing up"
+    nearest = min(poses_for((2.0, 0.75), held))[1]
+    assert nearest[:2] == pytest.approx((2.0, 0.55 - EDGE_DISTANCE)), "from the front, with room before the seat"
+
+
+def test_a_surface_counts_before_the_furniture_under_it() -> None:
+    body = Box(name="body", center=(0, 0, 0.5), size=(9, 9, 1))
+    assert msgspec.structs.replace(SCENE, furniture=(body,)).support_at(*ALONG) is SHELF
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "touches"),
+    [
+        ((-2.0, 0.0), (2.0, 0.0), True), ((0.1, 0.1), (0.2, 0.1), True), ((-2.0, 0.0), (-1.1, 0.0), False),
+        ((-2.0, 0.6), (2.0, 0.6), False), ((0.0, -2.0), (0.0, 2.0), True), ((-1.4, 0.3), (0.0, 1.7), False),
+        ((-1.4, 0.0), (0.0, 0.6), True),
+    ],
+)  # fmt: skip
+def test_a_line_meets_a_rectangle(start: tuple[float, float], end: tuple[float, float], touches: bool) -> None:
+    assert TURNED.meets(TURNED.to_map(*start), TURNED.to_map(*end)) is touches
+    assert TURNED.meets(TURNED.to_map(*end), TURNED.to_map(*start)) is touches
 
 
 @pytest.mark.parametrize(

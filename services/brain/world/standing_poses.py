@@ -18,7 +18,7 @@ def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:
     room = floor_plan.room_at(*point)
     options = [
         (penalty + WAY_COST * math.dist(pose[:2], here[:2]), pose, clearance(floor_plan, pose[0], pose[1]))
-        for penalty, pose in poses_for(point, floor_plan.surface_at(*point))
+        for penalty, pose in poses_for(point, floor_plan.support_at(*point))
         if floor_plan.room_at(pose[0], pose[1]) is room
     ]
     free = [(cost, pose) for cost, pose, space in options if space >= ROOM]
@@ -26,7 +26,7 @@ def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:
         return min(free)[1]
     if options:
         return max(options, key=lambda option: option[2])[1]
-    return min(poses_for(point, floor_plan.surface_at(*point)))[1]
+    return min(poses_for(point, floor_plan.support_at(*point)))[1]
 
 
 def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:

@@ -62,7 +62,7 @@ def stances(household: Household, found: WorldObject, but: Sequence[Pose2], stan
     which there is only room for one base, and which the household does not list for that, may be the one that serves.
     """
     x, y = found.position[:2]
-    surface, room = household.receptacle(found.on) or household.surface_at(x, y), household.room_at(x, y)
+    surface, room = household.receptacle(found.on) or household.support_at(x, y), household.room_at(x, y)
     listed = surface.approach if surface is not None else ()
     sides: list[Receptacle | None] = [surface]
     if surface is not None and listed:
