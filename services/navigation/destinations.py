@@ -1,8 +1,5 @@
 """Where the base may go for a goal: by the household as people call it now, and by what perception has reported."""
 
-import math
-from collections.abc import Sequence
-
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -13,16 +10,9 @@ from common.whereabouts import likelihood
 from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
 from services.navigation.goals import Choices, Goals
-from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.places import Places, load_places
 from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
-
-ON_FLOOR = 0.05
-"""Height [m] of an object's lower side up to which it is on the floor: a rug, and the error of what was measured."""
-BODY = 0.3
-"""Distance [m] from the middle of somebody who walks up to which what was seen on the floor is a part of them. Chosen:
-half a body, and half a step between the picture and the lidar's."""
 
 
 class Destinations:
@@ -33,7 +23,6 @@ class Destinations:
         self._places = load_places(config_dir())
         self._approaches = ApproachHistory()
         self._goal_id = ""
-        self._bodies: dict[str, tuple[float, bool]] = {}
         self._learn_names()
         self.coverage = SearchCoverage(viewpoints_of(io.household, None))
 
@@ -59,15 +48,15 @@ class Destinations:
 
     def standing_at(self, goal: m.NavGoal) -> Choices:
         """The pose of a goal and those before its object; raises `Ended` BAD_POSE."""
-        return self._approaches.penalised(self._goal_id, self.goals.pose(goal, self._objects()))
+        return self._approaches.penalised(self._goal_id, self.goals.pose(goal, self.objects()))
 
     def before(self, item: str) -> Choices:
         """Before each reported object that the words can mean; empty when none is known."""
-        return self._approaches.penalised(self._goal_id, self.goals.seen(item, self._objects()))
+        return self._approaches.penalised(self._goal_id, self.goals.seen(item, self.objects()))
 
     def known(self, item: str) -> bool:
         """The words can mean a reported object."""
-        return self.goals.known(item, self._objects())
+        return self.goals.known(item, self.objects())
 
     def search(self, item: str, now: float) -> Search:
         """A search by where the item and its like were seen and where they belong."""
@@ -77,26 +66,7 @@ class Destinations:
         likely = likelihood(item, self._io.household, rows, at, self.coverage.viewpoints)
         return Search(item, self.coverage, self._config, now, likely)
 
-    def on_floor(self, people: Sequence[Obstacle]) -> list[tuple[float, float, float]]:
-        """Circles (x, y, radius) [map, m] around reported objects on the floor, where the lidar looks over them.
-
-        `people` are about now: what was taken for an object where one of them was is left out until it is seen again.
-        """
-        lying = [o for o in self._objects() if not o.held and o.position[2] - o.size[2] / 2 < ON_FLOOR]
-        self._bodies = {o.label: self._body(o, people) for o in lying}
-        return sorted(
-            (o.position[0], o.position[1], math.hypot(o.size[0], o.size[1]) / 2)
-            for o in lying
-            if not self._bodies[o.label][1]
-        )
-
-    def _body(self, o: m.WorldObject, people: Sequence[Obstacle]) -> tuple[float, bool]:
-        """When an object was seen last, and whether somebody was there then."""
-        known = self._bodies.get(o.label)
-        if known is not None and known[0] == o.seen_at:
-            return known
-        return o.seen_at, any(math.dist((p.x, p.y), o.position[:2]) < BODY for p in people if p.walked)
-
-    def _objects(self) -> list[m.WorldObject]:
+    def objects(self) -> list[m.WorldObject]:
+        """What perception has reported last."""
         reported = self._io.latest(topics.WORLD_OBJECTS)
         return reported.objects if reported else []

@@ -19,6 +19,7 @@ from services.navigation.orientation import Orientation
 from services.navigation.others.neighbours import Neighbours
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.low_things import LowThings
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.reports import Reports
 from services.navigation.search.search import Search
@@ -48,6 +49,7 @@ class NavigationService:
         spare = 0.0 if config.map == "mapping" else config.clearance
         self._planner = PathPlanner(self._map, config.footprint_radius + spare, config.inflation)
         self._contacts = Contacts(self._map, config.footprint_radius)
+        self._low = LowThings(self._map)
         self._state = StateEstimator(config, io, self._map)
         self._navigator: Navigator | None = None
         self._search: Search | None = None
@@ -65,13 +67,15 @@ class NavigationService:
     def step(self, now: float) -> None:
         io, self._now = self._io, now
         self._state.step(now)
+        if self._state.fresh and not self._state.lost:
+            self._low.see(self._state.unmapped, now)
         self._neighbours.hear(self._known_pose, self._busy, now)
         self._state.robots = self._neighbours.circles
         if int(now) != self._shown:
             self._shown = int(now)
             self._changes.save(self._map.changes, now)
             self._contacts.forget(now)
-            self._map.place(self._destinations.on_floor(self._state.tracker.people()), "floor")
+            self._low.place(self._destinations.objects())
             if io.has_subscribers(topics.COSTMAP):
                 io.publish(topics.COSTMAP, self._map.picture(now))
         if io.take_all(topics.ROBOT_STOP) and self._busy:

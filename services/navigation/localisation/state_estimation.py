@@ -37,7 +37,8 @@ ANYWHERE = (10.0, 10.0, math.pi)
 class StateEstimator:
     """`pose` [map] is None before the first odometry, `points` (n, 2) [map] is what the lidar saw last, near the robot.
 
-    `odometry` is the pose by the wheels alone, `fresh`: a scan arrived in this step."""
+    `unmapped` (n, 2) [map] are those of the points that the map does not explain; `odometry` is the pose by the wheels
+    alone, `fresh`: a scan arrived in this step."""
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
@@ -54,6 +55,7 @@ class StateEstimator:
         self.odometry: Pose2 = (0.0, 0.0, 0.0)
         self.scan: Scan | None = None
         self.points: Array | None = None
+        self.unmapped: Array = np.empty((0, 2))
         self.fresh = False
         self.robots: list[tuple[float, float, float]] = []
         """Circles (x, y, radius) [map, m] that other robots say they stand in."""
@@ -148,7 +150,7 @@ class StateEstimator:
         if not self.lost:
             mapped = self.field.near if self._live is None else self._map.explains
             explained = mapped(placed, EXPLAINED) | _within(placed, self.robots)
-            left = placed[near & ~explained]
+            left = self.unmapped = placed[near & ~explained]
             self.tracker.update(left, (frame[0], frame[1]), now, self._map.stood_at(left, now))
             # A map in the making fits by itself.
             if len(placed) and not self.everywhere.broken and self._live is None:

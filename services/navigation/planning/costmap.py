@@ -32,7 +32,8 @@ _FAR = 1.0
 class Costmap(Cells):
     """What stands where; `static_distance` [m] is from each cell to the nearest obstacle of the static map.
 
-    `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`.
+    `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`. `doubted`: robot time
+    [s] up to which what was seen last then may be gone.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class Costmap(Cells):
         self._discs: dict[str, list[tuple[float, float, float]]] = {}
         self.version = 0
         self.people_pass = False
+        self.doubted = -math.inf
         reach = math.ceil(_REACH / resolution)
         offsets = np.arange(-reach, reach + 1) * resolution
         self._disc: Array = np.hypot(offsets, offsets[:, None])
@@ -242,12 +244,17 @@ class Costmap(Cells):
 
     def doubt(self, now: float, age: float) -> None:
         """Forget what has been out of sight for `age` seconds: it may be gone."""
+        self.doubted = now - age
         rows, columns = self._seen.cells()
         gone = self._seen.unseen_for((rows, columns), age, now)
         if gone.any():
             self._seen.drop((rows[gone], columns[gone]))
             self._distance = None
             self.version += 1
+
+    def seen_in(self, disc: tuple[float, float, float]) -> bool:
+        """Something was seen in a circle that the static map does not put there."""
+        return bool(len(self._within([disc])[0]))
 
     def seen_within(self, points: Array, radius: float) -> Grid:
         """Which points (n, 2) have something within `radius` that the static map does not put there."""
