@@ -43,8 +43,8 @@ class NavigationService:
         lasting_after = math.inf if config.map == "mapping" else config.lasting_after
         self._map = Costmap(io.household, config.resolution, config.obstacle_memory, lasting_after)
         self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
-        if self._changes.load(self._map.changes):
-            self._map.remember(0.0)
+        if self._changes.load(self._map.obstacles.changes):
+            self._map.obstacles.remember(0.0)
         # While a map is made its cells are the error: a door that the robot just fits through is passed.
         spare = 0.0 if config.map == "mapping" else config.clearance
         self._planner = PathPlanner(self._map, config.footprint_radius + spare, config.inflation)
@@ -73,7 +73,7 @@ class NavigationService:
         self._state.robots = self._neighbours.circles
         if int(now) != self._shown:
             self._shown = int(now)
-            self._changes.save(self._map.changes, now)
+            self._changes.save(self._map.obstacles.changes, now)
             self._contacts.forget(now)
             self._low.place(self._destinations.objects())
             if io.has_subscribers(topics.COSTMAP):

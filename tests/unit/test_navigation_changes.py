@@ -20,7 +20,7 @@ HERE = (0.0, 0.0, 0.0)
 
 
 def look(costmap: Costmap, now: float, boxes: list[Rectangle]) -> None:
-    costmap.see(HERE, ANGLES, cast(HERE, PLAN + boxes), 10.0, now)
+    costmap.obstacles.see(HERE, ANGLES, cast(HERE, PLAN + boxes), 10.0, now)
 
 
 def costmap() -> Costmap:
@@ -28,7 +28,7 @@ def costmap() -> Costmap:
 
 
 def stands(found: Costmap) -> bool:
-    return found.clearance(CHAIR.x, CHAIR.y) < 0.3 and found.sees_unmapped
+    return found.clearance(CHAIR.x, CHAIR.y) < 0.3 and not found.obstacles.empty
 
 
 def test_what_stands_there_for_long_is_remembered_out_of_sight() -> None:
@@ -37,36 +37,36 @@ def test_what_stands_there_for_long_is_remembered_out_of_sight() -> None:
     wall = Rectangle(0.6, -1.0, 1.6, 0.05, 0.9)
     look(found, 100.0, [wall])
     look(found, 301.0, [CHAIR])
-    assert stands(found) and found.changes.lasting.any()
+    assert stands(found) and found.obstacles.changes.lasting.any()
     look(found, 900.0, [wall])
     assert stands(found), "hidden for ten minutes"
     look(found, 901.0, [])
-    assert not found.changes.lasting.any() and not found.sees_unmapped, "seen to be gone"
+    assert not found.obstacles.changes.lasting.any() and found.obstacles.empty, "seen to be gone"
 
 
 def test_who_stands_there_now_and_then_is_no_furniture() -> None:
     found = costmap()
     for now in range(0, 900, 10):
         look(found, float(now), [CHAIR] if now % 100 < 60 else [])
-    assert not found.changes.lasting.any()
+    assert not found.obstacles.changes.lasting.any()
 
 
 def test_a_person_who_stands_for_long_does_not_become_furniture() -> None:
     found = costmap()
     for now in (0.0, 100.0, 301.0):
         person = [(CHAIR.x, CHAIR.y, 0.5)]
-        found.see(HERE, ANGLES, cast(HERE, [*PLAN, CHAIR]), 10.0, now, person)
-    assert found.sees_unmapped and not found.changes.lasting.any()
+        found.obstacles.see(HERE, ANGLES, cast(HERE, [*PLAN, CHAIR]), 10.0, now, person)
+    assert not found.obstacles.empty and not found.obstacles.changes.lasting.any()
 
 
 def test_a_place_found_anew_forgets_the_brief_and_keeps_the_lasting() -> None:
     found = costmap()
     look(found, 0.0, [CHAIR])
-    found.forget()
-    assert not found.sees_unmapped
+    found.obstacles.forget()
+    assert found.obstacles.empty
     look(found, 1.0, [CHAIR])
     look(found, 302.0, [CHAIR])
-    found.forget()
+    found.obstacles.forget()
     assert stands(found)
 
 

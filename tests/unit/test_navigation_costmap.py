@@ -35,7 +35,7 @@ def see(made: Costmap, now: float, people: object = (), moving: object = (), **h
     ranges = np.full(360, 20.0)
     for name, reach in hits.items():
         ranges[int(name[1:])] = reach
-    made.see(HERE, EAST, ranges, 10.0, now, people, moving)  # type: ignore[arg-type]
+    made.obstacles.see(HERE, EAST, ranges, 10.0, now, people, moving)  # type: ignore[arg-type]
 
 
 def hand_made(grid: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ def test_a_distance_of_ones_own_takes_the_place_of_the_plan_and_forgets() -> Non
     version = made.version
     made.confine(own)
     assert made.static_distance is own and np.argwhere(made.static).tolist() == [[3, 4]]
-    assert made.distance is own and not made.sees_unmapped and made.version == version + 1
+    assert made.distance is own and made.obstacles.empty and made.version == version + 1
 
 
 # --- circles
@@ -143,16 +143,16 @@ def test_what_was_seen_in_a_circle_is_disowned() -> None:
     made = costmap()
     see(made, 1.0, d0=0.5, d90=1.0)
     version, clear = made.version, costmap()
-    made.disown([(9.0, 9.0, 0.3)])
-    made.disown([])
+    made.obstacles.disown([(9.0, 9.0, 0.3)])
+    made.obstacles.disown([])
     assert made.version == version and made.clearance(2.575, 0.075) == 0.0
-    made.disown([(2.575, 0.075, 0.3)])
+    made.obstacles.disown([(2.575, 0.075, 0.3)])
     assert made.version == version + 1
     assert made.clearance(2.575, 0.075) > 0.0 and made.clearance(2.075, 1.075) == 0.0
-    made.disown([(2.075, 1.075, 0.3)])
-    assert np.allclose(made.distance, clear.distance) and not made.sees_unmapped
+    made.obstacles.disown([(2.075, 1.075, 0.3)])
+    assert np.allclose(made.distance, clear.distance) and made.obstacles.empty
     version = made.version
-    made.disown([(2.075, 1.075, 0.3)])
+    made.obstacles.disown([(2.075, 1.075, 0.3)])
     assert made.version == version, "nothing was left there"
 
 
@@ -161,11 +161,11 @@ def test_after_forgetting_only_circles_and_the_plan_are_left() -> None:
     made = costmap()
     see(made, 1.0, d0=0.5)
     version = made.version
-    made.forget()
+    made.obstacles.forget()
     assert made.distance is made.static_distance and made.version == version + 1
     see(made, 2.0, d0=0.5)
     made.place([(1.5, 0.0, 0.2)], of="robots")
-    made.forget()
+    made.obstacles.forget()
     assert made.clearance(1.5, 0.0) == 0.0 and made.clearance(2.575, 0.075) > 0.0
 
 
@@ -174,12 +174,12 @@ def test_what_became_a_part_of_the_map_outlives_forgetting() -> None:
     spot = np.array(
         [(2.575, 0.075), (2.575, 0.075 + 2 * CELL), (2.575 + CELL, 0.075), (2.575 - CELL, 0.075 + CELL), (1.2, -1.5)]
     )
-    assert not made.lasting_at(spot).any()
+    assert not made.obstacles.lasting_at(spot).any()
     for now in np.arange(0.0, 12.0, 0.5):
         see(made, float(now), d0=0.5)
-    assert made.lasting_at(spot).tolist() == [True, False, True, True, False]
+    assert made.obstacles.lasting_at(spot).tolist() == [True, False, True, True, False]
     version = made.version
-    made.forget()
+    made.obstacles.forget()
     assert made.clearance(2.575, 0.075) == 0.0 and made.version == version + 2
 
 
@@ -188,7 +188,7 @@ def test_people_never_become_a_part_of_the_map_but_things_beside_them_do(kind: s
     made = costmap(lasting_after=5.0)
     for now in np.arange(0.0, 12.0, 0.5):
         see(made, float(now), **{kind: [(2.575, 0.075, 0.3)]}, d0=0.5, d180=0.75)  # type: ignore[arg-type]
-    assert made.lasting_at(np.array([(2.575, 0.075), (1.325, 0.075)])).tolist() == [False, True]
+    assert made.obstacles.lasting_at(np.array([(2.575, 0.075), (1.325, 0.075)])).tolist() == [False, True]
     assert made.clearance(2.575, 0.075) == 0.0, "they are in the way all the same"
     assert made.distance_but_for_people()[made.cell(2.575, 0.075)] > 0.0
     assert made.distance_but_for_people()[made.cell(1.325, 0.075)] == 0.0

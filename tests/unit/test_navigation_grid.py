@@ -162,15 +162,15 @@ def scan(**hits: float) -> np.ndarray:
 
 
 def see(made: Costmap, now: float, pose: tuple[float, float, float] = HERE, limit: float = 10.0, **hits: float) -> None:
-    made.see(pose, EAST, scan(**hits), limit, now)
+    made.obstacles.see(pose, EAST, scan(**hits), limit, now)
 
 
 def test_what_the_map_lacks_is_marked_where_the_ray_ends() -> None:
     made = costmap(ROOM)
     before = made.distance
-    assert made.version == 0 and not made.sees_unmapped
+    assert made.version == 0 and made.obstacles.empty
     see(made, 1.0, d0=1.0)
-    assert made.sees_unmapped and made.version == 1
+    assert not made.obstacles.empty and made.version == 1
     spot = made.cell(4.0, 3.0)
     grid = made.distance
     assert grid is not before and before[spot] > 1.0, "the static distances are left alone"
@@ -192,7 +192,7 @@ def test_a_turned_robot_sees_turned() -> None:
 
 def test_something_in_the_corner_of_the_map_is_marked_too() -> None:
     made = Costmap(flat(0.5, 0.5), CELL, 30.0)
-    made.static_distance[:] = 5.0
+    made.confine(np.full(made.shape, 5.0))
     see(made, 1.0, (0.23, 0.23, 0.0), d180=0.48, d0=0.47, d90=0.47, d270=0.48)
     for x, y in ((-0.25, 0.23), (0.7, 0.23), (0.23, 0.7), (0.23, -0.25)):
         assert made.clearance(x, y) == 0.0
@@ -201,18 +201,18 @@ def test_something_in_the_corner_of_the_map_is_marked_too() -> None:
 def test_a_range_beyond_the_limit_is_nothing_and_one_at_it_is_something() -> None:
     made = costmap(ROOM)
     see(made, 1.0, limit=1.0, d0=1.01)
-    assert not made.sees_unmapped
+    assert made.obstacles.empty
     see(made, 1.0, limit=1.0, d0=1.0)
-    assert made.sees_unmapped
+    assert not made.obstacles.empty
 
 
 def test_what_the_map_explains_or_does_not_reach_is_not_marked() -> None:
     made = costmap(ROOM)
     see(made, 1.0, d0=3.0, d90=2.97, d180=3.9, d270=9.0)
     see(made, 1.0, (0.5, 0.5, 0.0), d180=0.85, d270=9.0)
-    assert not made.sees_unmapped and made.version == 0
+    assert made.obstacles.empty and made.version == 0
     see(made, 1.0, d0=2.7)
-    assert made.sees_unmapped
+    assert not made.obstacles.empty
 
 
 def test_a_ray_that_passes_clears_and_one_that_ends_before_does_not() -> None:
@@ -226,7 +226,7 @@ def test_a_ray_that_passes_clears_and_one_that_ends_before_does_not() -> None:
     see(made, 1.3, d0=0.9)
     assert made.clearance(3.0125, 4.0125) > 0.4 and made.version == version + 1
     see(made, 1.4)
-    assert not made.sees_unmapped and made.distance is made.static_distance
+    assert made.obstacles.empty and made.distance is made.static_distance
 
 
 def test_only_the_ray_at_its_bearing_clears() -> None:
@@ -236,18 +236,18 @@ def test_only_the_ray_at_its_bearing_clears() -> None:
     ray = round(math.degrees(math.atan2(spot[1] - 3.0, spot[0] - 3.0) - 1.0)) % 360
     behind = np.full(360, 0.3)
     behind[ray] = FAR_AWAY
-    made.see((3.0, 3.0, 1.0), EAST, behind, 10.0, 1.1)
+    made.obstacles.see((3.0, 3.0, 1.0), EAST, behind, 10.0, 1.1)
     assert made.clearance(*spot) > 0.0
     see(made, 1.2, (3.0, 3.0, 1.0), d300=1.0)
     before = np.full(360, FAR_AWAY)
     before[ray] = 0.5
-    made.see((3.0, 3.0, 1.0), EAST, before, 10.0, 1.3)
+    made.obstacles.see((3.0, 3.0, 1.0), EAST, before, 10.0, 1.3)
     assert made.clearance(*spot) == 0.0
 
 
 def shadow(made: Costmap, now: float) -> None:
     """Look away: nothing is seen, and no ray passes what was seen in the east."""
-    made.see(HERE, EAST, np.full(360, 0.05), 0.01, now)
+    made.obstacles.see(HERE, EAST, np.full(360, 0.05), 0.01, now)
 
 
 @pytest.mark.parametrize(("memory", "brief"), [(30.0, 4.0), (3.0, 3.0)])
@@ -256,9 +256,9 @@ def test_what_was_there_for_a_moment_is_forgotten_soon(memory: float, brief: flo
     see(made, 1.0, d0=1.0)
     see(made, 3.0, d0=1.0)
     shadow(made, 3.0 + brief)
-    assert made.sees_unmapped
+    assert not made.obstacles.empty
     shadow(made, 3.1 + brief)
-    assert not made.sees_unmapped
+    assert made.obstacles.empty
 
 
 def test_what_stood_there_for_longer_is_remembered() -> None:
@@ -266,23 +266,23 @@ def test_what_stood_there_for_longer_is_remembered() -> None:
     see(made, 1.0, d0=1.0)
     see(made, 3.1, d0=1.0)
     shadow(made, 33.0)
-    assert made.sees_unmapped
+    assert not made.obstacles.empty
     shadow(made, 33.2)
-    assert not made.sees_unmapped
+    assert made.obstacles.empty
     see(made, 40.0, d0=1.0)
     shadow(made, 44.1)
-    assert not made.sees_unmapped, "it was forgotten when it came first"
+    assert made.obstacles.empty, "it was forgotten when it came first"
 
 
 def test_doubt_forgets_what_is_out_of_sight() -> None:
     made = costmap(ROOM)
-    made.doubt(5.0, 1.0)
+    made.obstacles.doubt(5.0, 1.0)
     assert made.version == 0
     see(made, 1.0, d0=1.0)
-    made.doubt(3.0, 2.0)
-    assert made.sees_unmapped and made.version == 1
-    made.doubt(3.1, 2.0)
-    assert not made.sees_unmapped and made.version == 2
+    made.obstacles.doubt(3.0, 2.0)
+    assert not made.obstacles.empty and made.version == 1
+    made.obstacles.doubt(3.1, 2.0)
+    assert made.obstacles.empty and made.version == 2
     assert made.clearance(4.0, 3.0) > 0.9, "the distances follow"
 
 
@@ -409,10 +409,10 @@ def test_where_nothing_is_free_there_is_no_way() -> None:
 def test_what_the_lidar_sees_is_planned_around_but_is_no_wall_for_ever() -> None:
     made, paths = planner(DOOR)
     assert math.isfinite(paths.cost_to(paths.field(*WEST), EASTERN))
-    made.see((3.0, 4.0, math.pi / 2), EAST, scan(d0=0.7), 10.0, 1.0)
+    made.obstacles.see((3.0, 4.0, math.pi / 2), EAST, scan(d0=0.7), 10.0, 1.0)
     assert paths.cost_to(paths.field(*WEST), EASTERN) == math.inf
     assert paths.possible(WEST, [EASTERN]), "the static map has a way"
-    made.doubt(10.0, 1.0)
+    made.obstacles.doubt(10.0, 1.0)
     assert math.isfinite(paths.cost_to(paths.field(*WEST), EASTERN))
 
 

@@ -37,7 +37,7 @@ class Floor:
     def scan(self, now: float, ahead: float = math.inf) -> None:
         ranges = np.full(360, 20.0)
         ranges[0] = ahead
-        self.map.see(HERE, EAST, ranges, 10.0, now)
+        self.map.obstacles.see(HERE, EAST, ranges, 10.0, now)
         self.low.see(np.array([(ahead, 0.0)]) if math.isfinite(ahead) else np.empty((0, 2)), now)
 
     def shut(self, *objects: m.WorldObject) -> bool:
@@ -90,9 +90,9 @@ def test_what_is_held_or_on_something_is_not_in_the_way() -> None:
 def test_what_shut_every_way_is_tried_once_it_has_not_been_seen_for_a_while() -> None:
     floor = Floor()
     floor.scan(5.0)
-    floor.map.doubt(7.0, 3.0)
+    floor.map.obstacles.doubt(7.0, 3.0)
     assert floor.shut(thing(5.0)), "seen since"
-    floor.map.doubt(9.0, 3.0)
+    floor.map.obstacles.doubt(9.0, 3.0)
     assert not floor.shut(thing(5.0))
     assert floor.shut(thing(9.0)), "it is there after all"
 

@@ -184,13 +184,13 @@ def test_what_a_person_leaves_is_forgotten_and_what_stood_there_before_is_not() 
     for tick in range(100):
         boxes = [box, body] if tick > 50 else [box]
         people = [(1.5, -0.8, 0.45)] if tick > 60 else []
-        made.see(here, ANGLES, cast(here, [*flat, *boxes]), 10.0, 0.1 * tick, people)
+        made.obstacles.see(here, ANGLES, cast(here, [*flat, *boxes]), 10.0, 0.1 * tick, people)
     free = made.distance_but_for_people()
     assert made.clearance(1.36, -0.8) < 0.1 < free[made.cell(1.36, -0.8)]
     assert free[made.cell(1.36, -1.3)] < 0.1 and made.clearance(1.36, -1.3) < 0.1
     away = (-1.0, 3.0, 0.0)
     for tick in range(100, 200):
-        made.see(away, ANGLES, cast(away, flat), 10.0, 0.1 * tick)
+        made.obstacles.see(away, ANGLES, cast(away, flat), 10.0, 0.1 * tick)
     assert made.clearance(1.36, -1.3) < 0.1, "a box stands where it stood"
     assert made.clearance(1.36, -0.8) > 0.1, "people walk on"
 
@@ -479,9 +479,9 @@ def test_a_way_round_is_not_given_up_until_the_first_one_is_seen_to_be_free() ->
     route = Route(config, costmap, planner, kitchen)
     assert route.plan(before, 0.0) == "new"
     flat = rectangles(SCENE, 0.2)
-    costmap.see(before, ANGLES, cast(before, [*flat, Rectangle(*KITCHEN_DOOR)]), 10.0, 1.0)
+    costmap.obstacles.see(before, ANGLES, cast(before, [*flat, Rectangle(*KITCHEN_DOOR)]), 10.0, 1.0)
     assert route.plan(before, 1.0) == "detour"
-    costmap.forget()
+    costmap.obstacles.forget()
     assert route.plan(around, 40.0) == "kept", "it may stand there yet, though that is long ago"
     assert route.plan(before, 41.0) == "new", "it does not"
 

@@ -118,10 +118,10 @@ def test_the_lidar_marks_what_the_map_lacks_and_clears_it_again() -> None:
     angles = -math.pi + np.arange(360) * math.radians(1)
     ranges = np.full(360, 11.0)
     ranges[175:186] = 0.8
-    costmap.see((0.0, -0.9, -math.pi / 2), angles, ranges, 10.0, 1.0)
-    assert costmap.sees_unmapped and costmap.clearance(0.0, -1.7) < 0.1
-    costmap.see((0.0, -0.9, -math.pi / 2), angles, np.full(360, 11.0), 10.0, 1.1)
-    assert not costmap.sees_unmapped and costmap.clearance(0.0, -1.7) > 0.3
+    costmap.obstacles.see((0.0, -0.9, -math.pi / 2), angles, ranges, 10.0, 1.0)
+    assert not costmap.obstacles.empty and costmap.clearance(0.0, -1.7) < 0.1
+    costmap.obstacles.see((0.0, -0.9, -math.pi / 2), angles, np.full(360, 11.0), 10.0, 1.1)
+    assert costmap.obstacles.empty and costmap.clearance(0.0, -1.7) > 0.3
 
 
 def test_the_follower_stops_before_what_the_lidar_sees() -> None:

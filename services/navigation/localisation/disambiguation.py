@@ -37,7 +37,7 @@ def common_ground(costmap: Costmap, odometry: Pose2, poses: Sequence[Pose2], sta
     x, y, _ = odometry
     here = Place(name="here", x=x, y=y, theta=0.0)
     area = FloorPlan(name="around", low=(x - REACH, y - REACH), high=(x + REACH, y + REACH), home=here)
-    found = Costmap(area, costmap.resolution, costmap.memory)
+    found = Costmap(area, costmap.resolution, costmap.obstacles.memory)
     centres = found.centres().reshape(-1, 2)
     distance = found.static_distance.ravel()
     rows, columns = costmap.shape

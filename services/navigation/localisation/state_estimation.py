@@ -139,7 +139,7 @@ class StateEstimator:
 
     def _forget(self) -> None:
         """What was seen was seen in another frame."""
-        self._map.forget()
+        self._map.obstacles.forget()
         self.tracker = ObstacleTracker()
 
     def _see(self, scan: Scan, now: float) -> None:
@@ -151,10 +151,10 @@ class StateEstimator:
             mapped = self.field.near if self._live is None else self._map.explains
             explained = mapped(placed, EXPLAINED) | _within(placed, self.robots)
             left = self.unmapped = placed[near & ~explained]
-            self.tracker.update(left, (frame[0], frame[1]), now, self._map.stood_at(left, now))
+            self.tracker.update(left, (frame[0], frame[1]), now, self._map.obstacles.stood_at(left, now))
             # A map in the making fits by itself.
             if len(placed) and not self.everywhere.broken and self._live is None:
-                self.map_fit.see(frame, float(np.mean(explained | self._map.lasting_at(placed))))
+                self.map_fit.see(frame, float(np.mean(explained | self._map.obstacles.lasting_at(placed))))
             self.mark(self._map, frame, now)
 
     def mark(self, costmap: Costmap, frame: Pose2, now: float) -> None:
@@ -168,7 +168,7 @@ class StateEstimator:
                 ends = eye[:2] + reach[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=1)
                 # What another robot holds up tells nothing, as what this one does.
                 reach = np.where(_within(ends, self.robots), 0.0, reach)
-            costmap.see(eye, scan.angles, reach, scan.range_max, now, people, moving)
+            costmap.obstacles.see(eye, scan.angles, reach, scan.range_max, now, people, moving)
 
 
 def _within(points: Array, circles: list[tuple[float, float, float]]) -> NDArray[np.bool_]:

@@ -11,19 +11,12 @@ from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead
-from services.navigation.motion.progress import (
-    CLOSE,
-    PASSING,
-    PERSON,
-    BlockedTimer,
-    Progress,
-    anybody_near,
-    waiting_for,
-)
+from services.navigation.motion.progress import PASSING, PERSON, Progress
 from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
-from services.navigation.motion.route import DETOUR_PAUSE, Blocker, Route
+from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.motion.targets import Targets
+from services.navigation.motion.waiting import Waiting
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
@@ -56,13 +49,10 @@ class Navigator:
         costmap.let_people_pass(False)
         self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
-        self._blocked = BlockedTimer(patience)
-        self._blocker: Blocker = "things"
         self._recovery = Recovery(config, costmap, planner)
+        self.waiting = Waiting(config, costmap, self._progress, self._recovery, patience)
         self._contacts = contacts
         self._targets = Targets(name)
-        self.robots: Sequence[tuple[float, float, float]] = ()
-        """Circles (x, y, radius) [map, m] of robots that are about to make way."""
         self.recoveries = 0
         self.remaining = 0.0
         self.doing = ""
@@ -144,14 +134,14 @@ class Navigator:
         self._progress.check(now)
         self._progress.hold_up(now)
         self._recovery.under_way, self.doing = None, "GIVING_WAY"
-        self._blocked.clear()
+        self.waiting.clear()
         return self._targets.aside(spot)
 
     def go_on(self, now: float) -> None:
         """The way is free again, from wherever the robot is by now."""
         self._progress.restart(now)
         self._route.follower, self._route.planned_at = None, -math.inf
-        self._blocked.clear()
+        self.waiting.clear()
 
     def relocated(self, now: float) -> None:
         """The robot is not where it seemed to be: everything but the goal begins anew with the next step."""
@@ -159,7 +149,7 @@ class Navigator:
         self._route.abandon()
         self._targets.start, self._progress.deadline = None, math.inf
         self._progress.restart(now)
-        self._blocked.clear()
+        self.waiting.clear()
 
     def _begin(self, pose: Pose2, now: float) -> None:
         """The first plan.
@@ -208,14 +198,11 @@ class Navigator:
         ):
             self.doing = ""
         if ahead.blocked:
-            self._progress.excuse(now)
-            somebody = self._map.people_pass or anybody_near((pose[0], pose[1]), obstacles)
-            self._blocker = "people" if somebody else "things"
-            self._wait_for(pose, obstacles, now)
-            if self._blocked.blocked(self._blocker == "people", now) > self._config.blocked_wait:
-                self._recover(pose, now, "the way is blocked", by_people=self._blocker == "people")
+            self.doing = self.waiting.on_the_way(pose, obstacles, now)
+            if self.waiting.over(now):
+                self._recover(pose, now, "the way is blocked", by_people=self.waiting.for_people)
             return
-        self._blocked.clear()
+        self.waiting.clear()
         if met := self._contacts.check(pose, ahead.pose, now):
             self.met = met
             self._recover(pose, now, "held up by something unseen", "HELD_UP")
@@ -234,37 +221,22 @@ class Navigator:
         """No path at this moment: stand, look for one every second, lose patience in time."""
         if now - self._route.planned_at > REPLAN_PERIOD:
             if self._plan(pose, now, obstacles):
-                self._blocked.clear()
+                self.waiting.clear()
                 return self._targets.next(pose)
-            self._blocker = self._route.blocked_by(pose, now)
-            self._map.let_people_pass(self._blocker == "people" and self._recovery.stands_its_ground)
-        by_people = self._blocker == "people"
-        self._wait_for(pose, obstacles, now, by_people)
-        if self._blocker == "newcomers":
-            self._progress.hold_up(now)
-        if self._blocked.blocked(self._blocker != "things", now) > self._config.blocked_wait:
+            self.waiting.shut(self._route.blocked_by(pose, now))
+        self.doing = self.waiting.without_a_way(pose, obstacles, now)
+        if self.waiting.over(now):
+            by_people = self.waiting.for_people
             who = "somebody" if by_people else "something"
             self._recover(pose, now, f"{who} stands in every way there", by_people=by_people)
         return self._targets.next(pose)
-
-    def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool = False) -> None:
-        """Blocked at this moment: by a person, who may want to get past the robot, or by something."""
-        if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
-            self.doing = "ROBOT_IN_WAY"
-            self._progress.hold_up(now)
-            self._blocked.clear()
-            return
-        self.doing = waiting_for((pose[0], pose[1]), people, by_people)
-        if self.doing == PERSON:
-            self._progress.hold_up(now)
-            self._recovery.let_pass(pose, people, now)
 
     def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF", by_people: bool = False) -> None:
         """Raises `Ended` BLOCKED, or PERSON_IN_WAY, after the last retry."""
         self._recovery.back_off(pose, now, why, PERSON if by_people else "BLOCKED", doing == "HELD_UP")
         self.recoveries += 1
         self.doing = doing
-        self._blocked.clear()
+        self.waiting.clear()
 
     def _go_back(
         self,
@@ -283,5 +255,5 @@ class Navigator:
             self._progress.restart(now)
             self._route.follower = None
             self._plan(pose, now)
-            self._blocked.clear()
+            self.waiting.clear()
         return self._targets.next(retreat.step(pose, points))

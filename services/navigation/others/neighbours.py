@@ -100,7 +100,7 @@ class Neighbours:
                 self.first.append(_other(name, k, now))
             else:
                 self.others.append(_other(name, k, now))
-        self._map.disown([(x, y, radius + ROBOT) for x, y, radius in self.circles])
+        self._map.obstacles.disown([(x, y, radius + ROBOT) for x, y, radius in self.circles])
         self._map.place(fixed, "robots")
 
     def _note(self, name: str, told: m.DriveIntent, now: float) -> None:
@@ -140,7 +140,7 @@ class Neighbours:
             return None
         right, ahead = self.right_of_way, None
         if navigator is not None:
-            navigator.robots = [(*o.place, o.radius) for o in (*self.first, *self.others)]
+            navigator.waiting.robots = [(*o.place, o.radius) for o in (*self.first, *self.others)]
             ahead = np.array(navigator.ahead(pose, now)) if self.first else None
         was = right.gives_way
         spot = right.step(pose, ahead, self.first, points, now)

@@ -40,7 +40,7 @@ class LowThings:
         """Enter those of the reported objects that are on the floor, but for what is doubted and was not seen since."""
         lying = [o for o in objects if not o.held and o.position[2] - o.size[2] / 2 < ON_FLOOR]
         self._tall = {o.label: self._judged(o) for o in lying}
-        circles = [_circle(o) for o in lying if o.seen_at > self._map.doubted and self._stands(o)]
+        circles = [_circle(o) for o in lying if o.seen_at > self._map.obstacles.doubted and self._stands(o)]
         self._map.place(sorted(circles), "floor")
 
     def _judged(self, o: m.WorldObject) -> tuple[float, bool]:
@@ -55,7 +55,7 @@ class LowThings:
 
     def _stands(self, o: m.WorldObject) -> bool:
         x, y, radius = _circle(o)
-        return not self._tall[o.label][1] or self._map.seen_in((x, y, radius + AROUND))
+        return not self._tall[o.label][1] or self._map.obstacles.seen_in((x, y, radius + AROUND))
 
 
 def _circle(o: m.WorldObject) -> tuple[float, float, float]:

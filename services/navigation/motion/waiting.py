@@ -1,0 +1,69 @@
+"""Who or what a robot that cannot get on waits for, and for how long."""
+
+import math
+from collections.abc import Sequence
+
+from common.geometry import Pose2
+from services.navigation.config import NavigationConfig
+from services.navigation.motion.obstacle_tracker import Obstacle
+from services.navigation.motion.progress import CLOSE, PERSON, BlockedTimer, Progress, anybody_near, waiting_for
+from services.navigation.motion.recovery import Recovery
+from services.navigation.motion.route import Blocker
+from services.navigation.planning.costmap import Costmap
+
+
+class Waiting:
+    """Of one goal. `robots` are circles (x, y, radius) [map, m] of robots that are about to make way; `patience`: how
+    long who may be people are waited for [s]."""
+
+    def __init__(
+        self, config: NavigationConfig, costmap: Costmap, progress: Progress, recovery: Recovery, patience: float
+    ) -> None:
+        self._limit, self._map, self._progress, self._recovery = config.blocked_wait, costmap, progress, recovery
+        self._timer = BlockedTimer(patience)
+        self._blocker: Blocker = "things"
+        self.robots: Sequence[tuple[float, float, float]] = ()
+
+    @property
+    def for_people(self) -> bool:
+        """People are all that blocks the way."""
+        return self._blocker == "people"
+
+    def on_the_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
+        """Once a step before what blocks the path: what the robot does."""
+        self._progress.excuse(now)
+        somebody = self._map.people_pass or anybody_near((pose[0], pose[1]), people)
+        self._blocker = "people" if somebody else "things"
+        return self._before(pose, people, now, by_people=False)
+
+    def without_a_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
+        """Once a step while no path leads to the goal: what the robot does."""
+        doing = self._before(pose, people, now, self.for_people)
+        if self._blocker == "newcomers":
+            self._progress.hold_up(now)
+        return doing
+
+    def shut(self, blocker: Blocker) -> None:
+        """No path leads to the goal now, and this is why."""
+        self._blocker = blocker
+        self._map.let_people_pass(self.for_people and self._recovery.stands_its_ground)
+
+    def _before(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool) -> str:
+        """What blocks is a robot, a person, who may want to get past this one, or something."""
+        if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
+            self._progress.hold_up(now)
+            self._timer.clear()
+            return "ROBOT_IN_WAY"
+        doing = waiting_for((pose[0], pose[1]), people, by_people)
+        if doing == PERSON:
+            self._progress.hold_up(now)
+            self._recovery.let_pass(pose, people, now)
+        return doing
+
+    def over(self, now: float) -> bool:
+        """Once a step after that: it has lasted too long."""
+        return self._timer.blocked(self._blocker != "things", now) > self._limit
+
+    def clear(self) -> None:
+        """The way is free, or another one is tried."""
+        self._timer.clear()
