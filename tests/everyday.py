@@ -280,33 +280,43 @@ def _acts(steps: list[PlanStep], held: str = "", looks: bool = True) -> list[tup
             case "return":
                 found.append(("return",))
             case "release":
-                before = found.pop() if found and found[-1][0] in ("return", "goto") else None
+                before = found.pop() if found and found[-1][0] in ("return", "goto") else ("",)
                 found = [a for a in found if a[:2] != ("take", held)]
-                if before is None:
-                    found.append(("drop",))
-                elif before[0] == "return":
-                    found.append(("fetch", held or step.object, text.get(held, "")))
-                else:
-                    found.append(("put", held or step.object, before[1], text.get(held, "")))
+                found.append(_released(before, held or step.object, text.get(held, "")))
             case "navigate":
                 if step.target == "around":
                     found.append(("look",))
                 elif looks or following not in ("find", "place"):
                     found.append(("goto", step.target or step.object))
-            case "wait":
-                if step.seconds:
-                    found.append(("wait", f"{step.seconds:g}"))
-            case "say":
-                found.append(("say", step.text))
-            case "teach":
-                found.append(("teach", step.text))
-            case "name":
-                found.append(("place", step.text))
-            case "rule":
-                found.append(("rule", step.object.removesuffix("s"), step.target))
-            case "forget":
-                found.append(("norule" if step.target == "rule" else "forget", step.text))
+            case _:
+                found += _said_or_kept(step)
     return found
+
+
+def _released(before: tuple[str, ...], held: str, text: str) -> tuple[str, ...]:
+    """Letting go after an act, as one with it."""
+    match before[0]:
+        case "return":
+            return "fetch", held, text
+        case "goto":
+            return "put", held, before[1], text
+    return ("drop",)
+
+
+def _said_or_kept(step: PlanStep) -> list[tuple[str, ...]]:
+    """A step that moves nothing."""
+    match step.action:
+        case "wait":
+            return [("wait", f"{step.seconds:g}")] if step.seconds else []
+        case "name":
+            return [("place", step.text)]
+        case "rule":
+            return [("rule", step.object.removesuffix("s"), step.target)]
+        case "forget":
+            return [("norule" if step.target == "rule" else "forget", step.text)]
+        case "say" | "teach":
+            return [(step.action, step.text)]
+    return []
 
 
 def _same(wanted: tuple[tuple[str, str], ...], acts: list[tuple[str, ...]]) -> bool:
