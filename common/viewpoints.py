@@ -74,12 +74,12 @@ def _made(floor_plan: FloorPlan, camera: tuple[float, ...]) -> "Viewpoints":
 class Viewpoints:
     """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows.
 
-    `surface` (p,): the number of each point's surface, among those that are no bins.
+    `surface` (p,): the number of each point's surface, among those that are no bins; sofas and beds come after them.
     """
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
         self._camera = camera
-        self._surfaces = [r for r in floor_plan.receptacles if r.kind != "bin"]
+        self._surfaces = [*(r for r in floor_plan.receptacles if r.kind != "bin"), *floor_plan.seats]
         found = [_points_on(r) for r in self._surfaces]
         self.points: Array = np.concatenate(found or [np.empty((0, 3))])
         self.surface = np.repeat(np.arange(len(found)), [len(points) for points in found])
@@ -88,14 +88,19 @@ class Viewpoints:
         self._upright = math.tan(USED * camera.fovy / 2)
 
     @cached_property
+    def _views(self) -> list[tuple[Pose2, Mask]]:
+        before = [pose for r in self._surfaces for pose in _poses_before(r)]
+        return [(pose, shown) for pose in before if (shown := self.visible(pose)).any()]
+
+    @cached_property
     def poses(self) -> list[Pose2]:
-        """Base poses that face a surface from before one of its free edges."""
-        return [pose for r in self._surfaces for pose in _poses_before(r)]
+        """Base poses that face a surface from before one of its free edges, and show something."""
+        return [pose for pose, _ in self._views]
 
     @cached_property
     def shows(self) -> NDArray[np.bool_]:
         """Which points (v, p) each of the poses shows."""
-        return np.array([self.visible(pose) for pose in self.poses], bool).reshape(len(self.poses), len(self.points))
+        return np.array([shown for _, shown in self._views], bool).reshape(len(self._views), len(self.points))
 
     def visible(self, pose: Pose2) -> Mask:
         """Which points (p,) the camera sees from a base pose: in the picture, near enough, nothing tall between."""

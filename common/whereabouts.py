@@ -87,13 +87,17 @@ def likelihood(
 
 
 def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoints) -> Array:
-    """Shares of surfaces as a likelihood of each of a search's points (p,), at least LEAST, the mean near 1."""
-    likely = np.ones(len(viewpoints.points))
+    """Shares of surfaces as a likelihood of each of a search's points (p,), at least LEAST, the mean of them near 1.
+
+    On sofas and beds, which have no share, it is LEAST.
+    """
+    likely = np.full(len(viewpoints.points), LEAST)
     surfaces = [r for r in household.receptacles if r.kind != "bin"]
+    count = int((viewpoints.surface < len(surfaces)).sum())
     for n, r in enumerate(surfaces):
         of_it = viewpoints.surface == n
         if of_it.any():
-            likely[of_it] = max(LEAST, found.get(r.name, 0.0) * len(likely) / int(of_it.sum()))
+            likely[of_it] = max(LEAST, found.get(r.name, 0.0) * count / int(of_it.sum()))
     return likely
 
 

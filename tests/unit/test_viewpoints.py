@@ -10,8 +10,9 @@ import pytest
 from common import messages as m
 from common.floor_plan import Box, FloorPlan, Place, Receptacle, Wall
 from common.geometry import Pose2
-from common.household import load_household
+from common.household import Household, load_household
 from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
+from common.whereabouts import LEAST, spread
 from services.brain.world import viewpoint_search
 from services.sim.mounts import head_camera
 
@@ -143,3 +144,30 @@ def test_where_there_is_little_room_it_looks_last_and_where_no_way_leads_never()
     covered = views.covered(looked_from)
     assert covered[shown[1]].mean() > 0.9, "the desk is looked at from the gangway"
     assert not covered[shown[2]].any()
+
+
+def test_sofas_and_beds_are_looked_at_once_no_table_is_left() -> None:
+    sofa = Box(name="sofa seat", center=(1.0, 3.5, 0.21), size=(1.6, 0.8, 0.42))
+    flat = Household(
+        name="flat", low=(0.0, 0.0), high=(6.0, 4.0), home=Place(name="home", x=1.5, y=2.0),
+        walls=(Wall(start=(0.0, 4.0), end=(6.0, 4.0)),),
+        furniture=(
+            sofa, Box(name="sofa back", center=(1.0, 3.85, 0.6), size=(1.6, 0.16, 0.4)),
+            Box(name="chest", center=(5.5, 3.6, 0.5), size=(0.6, 0.6, 1.0)),
+            Box(name="rug", center=(2.0, 1.0, 0.005), size=(1.0, 1.0, 0.01)),
+        ),
+        receptacles=(
+            Receptacle(name="table", kind="table", center=(5.0, 0.4, 0.5), size=(1.0, 0.6), approach=((0.0, 1.0),)),
+        ),
+    )  # fmt: skip
+    views = Viewpoints(flat, NOMINAL)
+    assert set(views.surface) == {0, 1}, "no chest, no rug"
+    on_sofa = views.surface == 1
+    assert views.points[on_sofa][:, 2].max() < 0.5 and all(sofa.outline.contains(*p[:2]) for p in views.points[on_sofa])
+    likely = spread({"table": 1.0}, flat, views)
+    assert likely[on_sofa].max() == LEAST and likely[~on_sofa].mean() == pytest.approx(1.0)
+    looked_from: list[Pose2] = []
+    while (view := viewpoint_search.elsewhere(flat, views, (1.5, 2.0, 0.0), looked_from, (), likely)) is not None:
+        looked_from.append(view)
+    assert views.visible(looked_from[0])[~on_sofa].any(), "the sofa is nearer"
+    assert views.covered(looked_from)[on_sofa].mean() > 0.9
