@@ -2,10 +2,12 @@
 
 import math
 
+import msgspec
+
 from common import messages as m
 from common.approach import delivers_at_home, poses_for
 from common.floor_plan import Receptacle, Room
-from common.geometry import Pose2
+from common.geometry import SIDES, Pose2
 from common.household import Household
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
@@ -19,6 +21,9 @@ SAME = 0.4
 """An object reported within this of where a goal says that it is, is the goal's [m]: as far as a push moves one."""
 INSIDE, SPACING = 0.5, 0.3
 """Of the spots in a room, the distance from its sides and from each other [m]: a footprint, and half of one."""
+UNLISTED = 3.0
+"""Penalty [m] of a pose before a side of a surface that the household does not list as free: as much as a way round of
+20 m. Chosen: where the floor is free all the same, it serves."""
 LAST_RESORT = 100.0
 """Penalty of the pose that a goal gives when its object has others [m]: more than any way within a flat costs."""
 
@@ -88,7 +93,22 @@ class Goals:
         return [(0.0, self._places.spot(item) or self._config.find_spot)]
 
     def _before(self, point: tuple[float, float], receptacle: Receptacle | None) -> Choices:
-        return poses_for(point, receptacle, self._config.stand_off, self._config.edge_distance)
+        """Before the sides that the household lists, and as a last resort before the others, where no wall is between:
+        a chair may stand before the only side that is listed."""
+        stand_off, edge_distance = self._config.stand_off, self._config.edge_distance
+        listed = poses_for(point, receptacle, stand_off, edge_distance)
+        if receptacle is None or not receptacle.approach:
+            return listed
+        sides = tuple(side for side in SIDES if side not in receptacle.approach)
+        if not sides:
+            return listed
+        turned = msgspec.structs.replace(receptacle, approach=sides)
+        walls = [wall.footprint for wall in self._household.walls]
+        return listed + [
+            (UNLISTED + penalty, pose)
+            for penalty, pose in poses_for(point, turned, stand_off, edge_distance)
+            if not any(wall.meets(point, pose[:2]) for wall in walls)
+        ]
 
 
 def _within(room: Room) -> Choices:

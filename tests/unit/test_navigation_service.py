@@ -10,11 +10,11 @@ from common import topics
 from common.approach import delivers_at_home, poses_for
 from common.config import config_dir
 from common.floor_plan import FloorPlan, Wall
-from common.geometry import quat_yaw
+from common.geometry import Rectangle, quat_yaw
 from common.household import told
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.goals import Goals
+from services.navigation.goals import UNLISTED, Goals
 from services.navigation.motion.path_follower import PathFollower
 from services.navigation.places import Places, load_places
 from services.navigation.planning.costmap import Costmap
@@ -22,6 +22,7 @@ from services.navigation.planning.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
 from services.sim.layout import place_objects
 from tests.node import Node
+from tests.unit.navigation_flat import Flat
 
 WORLD = load_scene("apartment")
 SCENE = told(WORLD)
@@ -111,6 +112,28 @@ def test_what_is_brought_is_put_down_from_home_where_its_surface_is_before_it(
     ((_, pose), *others) = goals.place(scene.delivery)
     assert (pose == home) is expected and bool(others) is not expected
     assert delivers_at_home(msgspec.structs.replace(scene, delivery=""))
+
+
+def test_a_chair_before_the_only_side_that_is_listed_is_gone_round_to_another() -> None:
+    table = next(r for r in SCENE.receptacles if r.name == "bedside table")
+    assert table.approach == ((0, -1),)
+    x, y = table.center[:2]
+    flat = Flat([Rectangle(x, y - 0.6, 0.5, 0.5)])
+    flat.ask("goto bedside table")
+    assert flat.finish(120.0).status == "arrived"
+    assert abs(flat.true[0] - x) > 0.5 and math.dist(flat.true[:2], (x, y)) < 0.8
+    assert abs(math.remainder(math.atan2(y - flat.true[1], x - flat.true[0]) - flat.true[2], math.tau)) < 0.1
+
+
+def test_other_sides_come_after_those_that_are_listed_and_not_through_a_wall() -> None:
+    goals = Goals(SCENE, Places(SCENE, load_places(config_dir())), CONFIG)
+    desk = next(r for r in SCENE.receptacles if r.name == "desk")
+    listed = poses_for(desk.center[:2], desk, CONFIG.stand_off, CONFIG.edge_distance)
+    choices = goals.place("desk")
+    assert choices[: len(listed)] == listed
+    others = choices[len(listed) :]
+    assert others and min(penalty for penalty, _ in others) >= UNLISTED
+    assert all(SCENE.room_at(*pose[:2]) is SCENE.room_at(*desk.center[:2]) for _, pose in others)
 
 
 def test_the_lidar_marks_what_the_map_lacks_and_clears_it_again() -> None:
