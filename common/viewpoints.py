@@ -75,6 +75,7 @@ class Viewpoints:
     """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows.
 
     `surface` (p,): the number of each point's surface, among those that are no bins; sofas and beds come after them.
+    `listed` (p,): the point is on a surface that the floor plan lists.
     """
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
@@ -83,6 +84,7 @@ class Viewpoints:
         found = [_points_on(r) for r in self._surfaces]
         self.points: Array = np.concatenate(found or [np.empty((0, 3))])
         self.surface = np.repeat(np.arange(len(found)), [len(points) for points in found])
+        self.listed: Mask = self.surface < len(found) - len(floor_plan.seats)
         self._screens = _screens(floor_plan, camera.z)
         self._across = math.tan(USED * math.atan(math.tan(camera.fovy / 2) * ASPECT))
         self._upright = math.tan(USED * camera.fovy / 2)

@@ -93,7 +93,7 @@ def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoi
     """
     likely = np.full(len(viewpoints.points), LEAST)
     surfaces = [r for r in household.receptacles if r.kind != "bin"]
-    count = int((viewpoints.surface < len(surfaces)).sum())
+    count = int(viewpoints.listed.sum())
     for n, r in enumerate(surfaces):
         of_it = viewpoints.surface == n
         if of_it.any():

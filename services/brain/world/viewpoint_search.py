@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Collection
+from itertools import product
 
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
@@ -17,8 +18,8 @@ TRIES = 2
 
 
 def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) -> Pose2 | None:
-    """The heading at this spot that shows most that is new; None when turning shows nothing."""
-    return viewpoints.turn(here, _unseen(viewpoints, looked_from))
+    """The heading at this spot that shows most that is new of tables and shelves; None when turning shows nothing."""
+    return viewpoints.turn(here, _unseen(viewpoints, looked_from) * viewpoints.listed)
 
 
 def elsewhere(
@@ -33,7 +34,7 @@ def elsewhere(
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
-    takes it.
+    takes it. Sofas and beds come last.
     """
     ways = Ways(floor_plan, (here[0], here[1]))
 
@@ -49,8 +50,8 @@ def elsewhere(
     unseen, failed = _unseen(viewpoints, looked_from), Counter(unreached)
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        for free in (ample, fits):
-            if (found := viewpoints.best(unseen, tried, cost, free, likelihood)) is not None:
+        for worth, free in product((unseen * viewpoints.listed, unseen), (ample, fits)):
+            if (found := viewpoints.best(worth, tried, cost, free, likelihood)) is not None:
                 return found
     return None
 
