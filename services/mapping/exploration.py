@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
 from common import messages as m
@@ -18,6 +19,15 @@ EMPTY = 2
 
 Wanted = Literal["", "picture", "survey", "save"] | m.NavGoal
 State = Literal["choose", "driving", "settling", "looking", "surveying", "saving", "over"]
+NOTHING_KNOWN = Survey(frontiers=0, area=0.0, view=None)
+
+
+@dataclass
+class Drive:
+    """A goal of navigation, and how it `ended`; "": not yet."""
+
+    goal: m.NavGoal
+    ended: str = ""
 
 
 class Exploration:
@@ -28,16 +38,25 @@ class Exploration:
         self.phase: m.MappingPhase = "exploring"
         self.barred: list[tuple[float, float]] = []
         self.pictures = 0
-        self.frontiers, self.area = 0, 0.0
         self.detail = ""
         self._state: State = "choose"
-        self._goal: m.NavGoal | None = None
+        self._drive: Drive | None = None
         self._since = 0.0
         self._turns: list[float] | None = None
-        self._survey: Survey | None = None
-        self._ended = ""
+        self._survey = NOTHING_KNOWN
+        self._surveyed = False
         self._empty = 0
         self._tried_again = False
+
+    @property
+    def frontiers(self) -> int:
+        """Places left that can be reached, by the newest survey."""
+        return self._survey.frontiers
+
+    @property
+    def area(self) -> float:
+        """Floor that is known [m2], by the newest survey."""
+        return self._survey.area
 
     @property
     def driving(self) -> bool:
@@ -51,19 +70,19 @@ class Exploration:
 
     def heard(self, feedback: m.NavigationFeedback, now: float) -> None:
         """What navigation says of the goal under way."""
-        if self._goal is not None and feedback.goal_id == self._goal.id and feedback.status in ("arrived", "failed"):
-            self._ended = feedback.status
+        drive = self._drive
+        if drive is not None and feedback.goal_id == drive.goal.id and feedback.status in ("arrived", "failed"):
+            drive.ended = feedback.status
             self.detail = f"{feedback.code} {feedback.detail}".strip() if feedback.status == "failed" else ""
 
     def surveyed(self, survey: Survey) -> None:
         """What a survey has found."""
-        self._survey = survey
-        self.frontiers, self.area = survey.frontiers, survey.area
+        self._survey, self._surveyed = survey, True
 
     def step(self, pose: Pose2, now: float, busy: bool) -> Wanted:
         """What is wanted now, with the robot at `pose` [map]; `busy`: the worker still has to take something in."""
         if self._state == "driving":
-            return self._drive(pose, now)
+            return self._watch_drive(now)
         if self._state == "settling":
             if now - self._since >= self._config.settle:
                 self._state, self._since, self.pictures = "looking", now, 0
@@ -96,14 +115,14 @@ class Exploration:
                 self._state, self._since = "settling", now
                 return ""
             return self._go((pose[0], pose[1], heading), now)
-        self._state, self._survey = "surveying", None
+        self._state, self._surveyed = "surveying", False
         return "survey"
 
     def _choose(self, pose: Pose2, now: float) -> Wanted:
-        survey = self._survey
-        if survey is None:
+        if not self._surveyed:
             return ""
-        if survey.view is None:
+        view = self._survey.view
+        if view is None:
             self._empty += 1
             self._state = "choose"
             if self._empty >= EMPTY:
@@ -114,19 +133,20 @@ class Exploration:
                     self.phase = "returning"
             return ""
         self._empty = 0
-        return self._go(survey.view.pose, now)
+        return self._go(view.pose, now)
 
     def _go(self, pose: Pose2, now: float) -> m.NavGoal:
-        self._goal = m.NavGoal(x=pose[0], y=pose[1], theta=pose[2], id=self._new_id("mapping"))
-        self._state, self._since, self._ended = "driving", now, ""
-        return self._goal
+        self._drive = Drive(m.NavGoal(x=pose[0], y=pose[1], theta=pose[2], id=self._new_id("mapping")))
+        self._state, self._since = "driving", now
+        return self._drive.goal
 
-    def _drive(self, pose: Pose2, now: float) -> Wanted:
-        assert self._goal is not None
-        if not self._ended and now - self._since < self._config.goal_timeout:
+    def _watch_drive(self, now: float) -> Wanted:
+        drive = self._drive
+        assert drive is not None
+        if not drive.ended and now - self._since < self._config.goal_timeout:
             return ""
-        if self._ended != "arrived":
-            self.barred.append((self._goal.x, self._goal.y))
+        if drive.ended != "arrived":
+            self.barred.append((drive.goal.x, drive.goal.y))
         self._state, self._since = "settling", now
         return ""
 
