@@ -16,6 +16,9 @@ _COLOURS = {"grey": "0.45 0.46 0.48 1", "green": "0.25 0.50 0.30 1", "yellow": "
 _GLASS = "0.75 0.85 0.88 0.2"
 _TOP = 0.03
 """Thickness of a table's or a cupboard's top [m]."""
+CCD_TOLERANCE = 1e-8
+"""Tolerance of the search for contacts [m]. With MuJoCo's own, 1e-6, one contact in 16,000 of a pad with a cylinder
+that it hardly touches is found on the far side of the pad, 8 mm deep, and what is held is struck with 200 N."""
 
 
 def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0, group: int = 0) -> str:
@@ -119,7 +122,8 @@ def world_mjcf(
     assets = "".join(objects.made(p.spec).assets for p in placements)
     return f"""<mujoco model="{scene.name}">
 <compiler angle="radian" autolimits="true"/>
-<option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>
+<option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
+  ccd_tolerance="{CCD_TOLERANCE}"/>
 <statistic center="{center[0]} {center[1]} 0.5" extent="6"/>
 <visual>
   <global offwidth="1280" offheight="960"/>

@@ -3,6 +3,7 @@ import math
 from pathlib import Path
 
 import msgspec
+import mujoco
 import numpy as np
 import pytest
 
@@ -18,6 +19,27 @@ from services.sim.layout import place_objects
 from services.sim.physics import Physics
 from tests.simulation import Simulation
 from tests.support import JOINT_NAMES
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [
+        (0.000109, -0.036428, 0.007356, 0.97908, -0.002399, -0.203458, -0.001327),
+        (-0.001558, -0.03648, -0.016913, 0.996033, -0.001154, -0.088971, -0.001372),
+        (-0.001521, -0.03649, 0.009674, 0.961262, -0.002435, -0.275559, 0.005973),
+    ],
+)
+def test_a_pad_that_hardly_touches_a_can_is_not_deep_in_it(pose: tuple[float, ...]) -> None:
+    """`pose`: of a can's axis before a pad, 72 to 84 um into it as a box of 8 mm."""
+    tolerance = Physics(load_scene("minimal"), 0).model.opt.ccd_tolerance
+    model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody>
+        <geom type="box" size="0.011 0.004 0.0094"/>
+        <body><freejoint/><geom type="cylinder" size="0.0325 0.058"/></body></worldbody></mujoco>""")
+    model.opt.ccd_tolerance = tolerance
+    data = mujoco.MjData(model)
+    data.qpos[:] = pose
+    mujoco.mj_forward(model, data)
+    assert data.ncon and data.contact.dist[: data.ncon].min() > -2e-4
 
 
 class World(Simulation):
