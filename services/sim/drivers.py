@@ -44,7 +44,7 @@ class Drivers:
     def put(self, pose: Pose2, stopped: bool = False) -> None:
         """The base rests at a pose (x, y, yaw)."""
         self.base = BaseDriver(self._config, pose, stopped=stopped)
-        self.setpoint[:3] = pose
+        self.setpoint[:3] = self._body.ctrl[:3] = pose
 
     def advance(self, believed: Pose2, now: float) -> tuple[Array, Array]:
         """Set-points (10,) of base, arm at the begin and at the end of a tick; `believed`: the odometry's pose."""
