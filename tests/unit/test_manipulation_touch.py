@@ -24,8 +24,8 @@ from services.manipulation.arm.touch import (
     tells_weight,
     watch,
 )
-from services.manipulation.arm.trajectory import back_along, divided
-from services.manipulation.execution.grasp_executor import close
+from services.manipulation.arm.trajectory import back_along, divided, timed, turned_back
+from services.manipulation.execution.closing import FARTHEST, STANDS, Yielding, close
 from services.manipulation.execution.place_executor import lower
 from services.manipulation.execution.robot import DT, Failure, Robot, Steps, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
@@ -100,6 +100,21 @@ def test_the_way_back_never_goes_deeper_first() -> None:
     for now, first in ((0.4, 0.3), (0.27, 0.2), (0.33, 0.2), (0.02, 0.0), (9.0, 0.3)):
         back = back_along(path, np.full(7, now))
         assert back[0][0] == pytest.approx(first) and back[-1][0] == 0.0
+
+
+@pytest.mark.parametrize("reached", [0.1, 0.6, 1.0])
+def test_what_is_met_is_left_on_the_path_on_which_it_was_met(reached: float) -> None:
+    """All joints brake and turn together: by themselves those of the wrist would be still while the shoulder moves."""
+    ratio = np.array([1.0, -0.2, 0.5, 0.0, 0.9, -0.4, 0.1])
+    path = timed([np.zeros(7), ratio], 1.0, 2.5, DT)
+    sent = np.concatenate([np.zeros((1, 7)), path[: int(reached * len(path))]])
+    joints, before = sent[-3], float(sent[-1][0] - sent[-2][0])
+    back = turned_back(sent, joints, 0.3, 0.12, 5.0, DT)
+    assert np.abs(back - back[:, :1] * ratio).max() < 1e-6
+    speeds = np.diff(np.concatenate([[sent[-1][0]], back[:, 0]]))
+    assert np.abs(np.diff(np.concatenate([[before], speeds]))).max() < 1.5 * 5.0 * DT * DT
+    assert speeds.min() >= -0.3 * DT - 1e-9
+    assert back[-1][0] == pytest.approx(max(0.0, joints[0] - 0.12), abs=1e-6)
 
 
 def test_a_divided_path_is_the_same_way() -> None:
@@ -232,11 +247,33 @@ def test_fingers_that_press_a_thing_on_its_surface_stop_and_those_that_push_it_a
         robot.torques = robot.planner.reaction.torques(robot.joints, np.array(force))
         ended = ""
         try:
-            for _ in close(robot, guard):
+            for _ in close(robot, robot.joints, guard):
                 pass
         except Failure as failure:
             ended = failure.code
         assert ended == code
+
+
+@pytest.mark.parametrize("push", [(0.0, -14.0, 0.0), (0.0, 0.0, 20.0), (2.0, 0.0, 2.0)])
+def test_a_hand_that_closes_gives_way_to_what_it_presses_on(push: tuple[float, float, float]) -> None:
+    """What the hand presses on bends it by 1 mm for 6 N, until it has come so far."""
+    _, robot, planner, _, top = reaching()
+    guard, feel, felt = robot.guard(np.zeros(7)), planner.reaction, np.array(push)
+    assert guard is not None
+    hand, begin = Yielding(guard, top), feel.position(top)
+    for _ in range(200):
+        came = feel.position(hand.at) - begin
+        force = felt + 6000.0 * came if np.linalg.norm(felt) > STANDS else felt
+        hand.step(top, feel.torques(top, force))
+    came = feel.position(hand.at) - begin
+    if np.linalg.norm(felt) <= STANDS:
+        assert not came.any()
+    else:
+        assert float(np.linalg.norm(felt + 6000.0 * came)) < STANDS + 1.0
+        assert float(came @ felt) < 0
+    for _ in range(200):
+        hand.step(top, feel.torques(top, 10 * felt))
+    assert float(np.linalg.norm(feel.position(hand.at) - begin)) < FARTHEST + 1e-3
 
 
 @pytest.mark.parametrize("times", [1, 2])
@@ -276,17 +313,17 @@ def test_what_is_met_on_the_way_home_is_backed_off_and_passed_slowly(times: int)
 def test_the_fingers_grip_in_steps_in_which_it_is_felt_that_they_press_something_down() -> None:
     pressed: list[float] = []
 
-    def move(closed: float, effort: float = 0.0, guard: object = None) -> Steps[None]:
+    def move(closed: float, effort: float = 0.0, guard: object = None, hand: object = None) -> Steps[None]:
         pressed.append(effort or CONFIG.grip_effort)
         if len(pressed) == 2 and guard is not None:
             raise Failure(TOUCHED, "31 N on the hand")
         yield
 
     robot: Any = SimpleNamespace(move_gripper=move)
-    list(close(robot, None))
+    list(close(robot, np.zeros(7), None))
     assert pressed == sorted(pressed) and pressed[-1] == CONFIG.grip_effort and len(pressed) > 2
     pressed.clear()
     guard: Any = object()
     with pytest.raises(Failure, match="press it down"):
-        list(close(robot, guard))
+        list(close(robot, np.zeros(7), guard))
     assert max(pressed) < CONFIG.grip_effort

@@ -40,6 +40,12 @@ class Reaction:
         """Torques (7,) [Nm] with which the hand presses with `force` (3,) [N]."""
         return np.asarray(self._lever(joints) @ force)
 
+    def moved(self, joints: Array, way: Array) -> Array:
+        """Change of the joints (7,) [rad] that moves the hand by `way` (3,) [m] without turning it."""
+        self._lever(joints)
+        found: Any = np.linalg.lstsq(self._jacobian[:, self._dofs], np.concatenate([way, np.zeros(3)]), rcond=None)[0]
+        return np.asarray(found)
+
     def weight(self, joints: Array) -> Array:
         """Torques (7,) [Nm] that hold the arm's own weight."""
         self._place(joints)

@@ -138,6 +138,32 @@ def timed(path: Sequence[Array], speed: float, acceleration: float, dt: float) -
     return samples
 
 
+def turned_back(sent: Array, joints: Array, speed: float, back: float, deceleration: float, dt: float) -> Array:
+    """Set-points (m, 7) every `dt` seconds that turn round on a path.
+
+    It was `sent` (n, 7) until now; they end `back` [rad] before where on it the arm is with its `joints` (7,), and go
+    back at most with `speed` [rad/s].
+
+    All joints brake together, as the path has them: where each brakes as it can, those of the wrist stop first, and the
+    hand goes on another way, into what it has met.
+    """
+    way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(sent, axis=0)).max(axis=1))])
+    nearest = int(np.argmin(np.abs(sent - joints).max(axis=1)))
+    at, end = float(way[-1]), max(float(way[nearest]) - back, 0.0)
+    # Braking it goes on along the path's last piece.
+    velocity, change = (at - float(way[-2])) / dt if len(way) > 1 else 0.0, deceleration * dt
+    ahead = sent[-1] - sent[-2] if len(way) > 1 and velocity else np.zeros(sent.shape[1])
+    found = []
+    while velocity > 0 or at > end + 1e-9:
+        left = max(at - end, 0.0)
+        wanted = -min(speed, math.sqrt(2 * deceleration * left + change**2 / 4) - change / 2, left / dt)
+        velocity = max(velocity - change, wanted)
+        at += velocity * dt
+        beyond = max(at - float(way[-1]), 0.0) / max(float(np.abs(ahead).max()), 1e-9)
+        found.append([np.interp(at, way, column) for column in sent.T] + beyond * ahead)
+    return np.array(found) if found else sent[nearest : nearest + 1]
+
+
 def _along(lengths: Array, corners: Array, speed: float, acceleration: float, dt: float) -> Array:
     """Way covered (n,) [rad] every `dt` seconds on pieces of `lengths` (m,), from rest to rest and with at most the
     speeds `corners` (m - 1,) between them.

@@ -1,5 +1,7 @@
 """Grasp executor: reach, aim, grasp, retract; another candidate after a miss."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from common import messages as m
@@ -8,8 +10,9 @@ from common.geometry import quat_matrix, yaw_quat
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import Contact, came_around
-from services.manipulation.arm.touch import BLOCKED, HIT, MET, TOO_HEAVY, TOUCHED, Guard, load_limit
-from services.manipulation.arm.trajectory import back_along, divided
+from services.manipulation.arm.touch import BLOCKED, HIT, MET, TOO_HEAVY, TOUCHED, load_limit
+from services.manipulation.arm.trajectory import back_along, divided, parallel
+from services.manipulation.execution.closing import close
 from services.manipulation.execution.grasp_choice import chosen, surroundings
 from services.manipulation.execution.recovery import retreat
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, go_home, planner_of
@@ -26,10 +29,6 @@ BAD_HOLD = "BAD_HOLD"
 """Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
 TOO_WIDE = "TOO_WIDE"
 """Code: the object does not fit between the open fingers."""
-CLOSING_EFFORTS = (8.0, 14.0)
-"""Forces [N] with which the fingers come, and press, before they grip: slow enough that they do not knock (in
-simulation 0.16 m/s each, three times what they do with the whole grip force), and in steps in which it is felt that
-they press something down: on a slope of 60 degrees the whole of it at once comes to 86 N."""
 WEIGHED = 3
 """Points of the lift at whose end what is too heavy has shown: 40 mm, where 30 N bend the arm by 3; slowly, for where
 the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
@@ -127,7 +126,8 @@ def _execute_grab(
     try:
         yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
         robot.phase = "grasp"
-        yield from close(robot, robot.guard(free, HIT, "down"))
+        at = yield from close(robot, plan.insert[-1], robot.guard(free, HIT, "down"))
+        plan = replace(plan, lift=parallel(plan.lift, at))
         _judge(robot, plan, None, widths)
     except Failure as failure:
         if failure.code == TOUCHED:
@@ -160,20 +160,6 @@ def _execute_grab(
     robot.sent_to.pop(plan.grasped.label, None)
     robot.source.remember(plan.grasped.label, None, "", robot.now)
     return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
-
-
-def close(robot: Robot, guard: Guard | None) -> Steps[None]:
-    """Fingers that close on the slope of a thing, or above its middle, press it on its surface.
-
-    Raises:
-        Failure: BLOCKED, more than its surface should bear.
-    """
-    try:
-        for effort in CLOSING_EFFORTS:
-            yield from robot.move_gripper(1.0, effort, guard)
-        yield from robot.move_gripper(1.0, guard=guard)
-    except Failure as failure:
-        raise Failure(BLOCKED, f"the fingers press it down: {failure.detail}") from None
 
 
 def _inserting(robot: Robot, plan: GrabPlan) -> float:

@@ -1,7 +1,7 @@
 """The arm as the sequences see and move it; each `yield` is one step of robot time, a `Failure` ends the goal."""
 
 from collections.abc import Callable, Generator, Sequence
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from services.manipulation.arm.touch import (
     tells_weight,
     watch,
 )
-from services.manipulation.arm.trajectory import back_along, timed
+from services.manipulation.arm.trajectory import timed, turned_back
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner
@@ -38,9 +38,12 @@ GRIPPER_TICKS = 5
 SHORT = 0.05
 """Error [rad] of a joint, at rest, from which the arm has not arrived: some 3 cm of the hand. Chosen: it sags by
 less."""
-BACK, CALM, SLOWLY = 0.12, 0.1, 0.3
-"""Way [rad] back off what was met, some 5 cm of the hand; for how long [s] the arm rests before; share of the joint
-speed then. Chosen."""
+BACK, SLOWLY = 0.12, 0.3
+"""Way [rad] back off what was met, some 5 cm of the hand; share of the joint speed then. Chosen."""
+CALM, READINGS = 0.1, 10
+"""How long [s] the arm rests before it is weighed what the hand lifts, and readings that are taken. Chosen."""
+BRAKING = 5.0
+"""Deceleration [rad/s^2] off what was met: what the large joints of a Kinova Gen3 can do (5.2 by the user guide)."""
 
 
 class Failure(Exception):
@@ -52,6 +55,12 @@ class Failure(Exception):
     def __init__(self, code: str, detail: str, blockers: Sequence[str] = (), stance: Pose2 | None = None) -> None:
         super().__init__(detail)
         self.code, self.detail, self.blockers, self.stance = code, detail, tuple(blockers), stance
+
+
+class Compliance(Protocol):
+    """Moves the hand by what it feels: set-points (7,) [rad] from joints (7,) [rad] and torques (7,) [Nm]."""
+
+    def step(self, joints: Array, torques: Array) -> Array: ...
 
 
 class Robot:
@@ -82,25 +91,37 @@ class Robot:
         """Stream a joint path and wait until the arm has come to rest at its end.
 
         Without a `guard` it is watched that the arm meets nothing with more than `most` [N] on the hand; off what it
-        meets it goes back a little.
+        meets it goes back a little, along the path.
 
         Raises:
-            Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
+            Failure: BLOCKED, or what the guard feels; the arm is then where it has met something.
         """
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
+        feeler, sent = guard or self._watch(most), [points[0]]
         try:
-            yield from self._stream_along(points, speed, guard or self._watch(most))
+            yield from self._stream_along(points, speed, feeler, sent)
         except Failure as failure:
-            if guard is None and failure.code == BLOCKED:
-                self.io.log.info("backing off", detail=failure.detail, phase=self.phase)
-                yield from self._back_off(points)
+            # What pulls at something stays strained: let go at once the arm would fall with it.
+            if failure.code != TOO_HEAVY:
+                back = BACK if guard is None and failure.code == BLOCKED else 0.0
+                if back:
+                    self.io.log.info("backing off", detail=failure.detail, phase=self.phase)
+                slowly = self.config.joint_speed * SLOWLY
+                for q in turned_back(np.array(sent), self.joints, slowly, back, BRAKING, DT):
+                    self.stream(q)
+                    yield
+                self.forget_command()
             raise
         self._command = None
 
-    def _stream_along(self, points: Sequence[Array], speed: float, feeler: Guard | Watch | None) -> Steps[None]:
+    def _stream_along(
+        self, points: Sequence[Array], speed: float, feeler: Guard | Watch | None, sent: list[Array]
+    ) -> Steps[None]:
+        """`sent`: the set-points until now are added to it."""
         for q in timed(points, speed, self.config.joint_acceleration, DT):
             self.stream(q)
+            sent.append(q)
             yield
             self._check_blocked(q)
             self._check_touched(feeler)
@@ -114,20 +135,10 @@ class Robot:
         if error.max() > SHORT:
             raise _behind(error)
 
-    def _back_off(self, path: Sequence[Array]) -> Steps[None]:
-        """A little back along a path, slowly, off what was met on it."""
-        self.forget_command()
-        yield from self.wait(CALM)
-        gap = back_along(path, self.joints)[0] - self.joints
-        back = self.joints + gap * min(1.0, BACK / max(float(np.abs(gap).max()), 1e-9))
-        try:
-            yield from self.follow([back], self.config.joint_speed * SLOWLY, self.guard(self.torques.copy(), HIT))
-        except Failure as failure:
-            self.io.log.warning("while backing off", code=failure.code, detail=failure.detail)
-            self.forget_command()
-
     def stream(self, q: Array) -> None:
-        """One set-point (7,) [rad] for the next 20 ms."""
+        """One set-point (7,) [rad] for the next 20 ms; within the joints' limits, which a measured angle may pass."""
+        if self.planner is not None:
+            q = np.clip(q, self.planner.arm.low, self.planner.arm.high)
         self._command = q
         self.io.publish(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=DT, t=self.now))
 
@@ -153,22 +164,19 @@ class Robot:
 
     def _check_touched(self, feeler: Guard | Watch | None) -> None:
         code, force = feeler.feel(self.joints, self.torques) if feeler is not None else ("", 0.0)
-        if not code:
-            return
-        if code != TOO_HEAVY:
-            self.stream(self.joints)
-            self.forget_command()
-        # Else the arm stays strained: let go at once it would fall with what it pulls at.
-        raise Failure(code, f"{force:.0f} N on the hand")
+        if code:
+            raise Failure(code, f"{force:.0f} N on the hand")
 
     def forget_command(self) -> None:
         """The arm was stopped or moved by somebody else."""
         self._command, self._late = None, 0
 
-    def move_gripper(self, closed: float, effort: float = 0.0, guard: Guard | None = None) -> Steps[None]:
+    def move_gripper(
+        self, closed: float, effort: float = 0.0, guard: Guard | None = None, hand: Compliance | None = None
+    ) -> Steps[None]:
         """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing.
 
-        `effort` [N] is what a finger presses at most, the configured one unless told.
+        `effort` [N] is what a finger presses at most, the configured one unless told; `hand`: moves the arm meanwhile.
 
         Raises:
             Failure: what the guard feels; the fingers go on pressing until they are told otherwise.
@@ -179,11 +187,30 @@ class Robot:
             if n % GRIPPER_TICKS == 0:
                 self.io.publish(topics.GRIPPER_COMMAND, command)
             yield
-            self._check_touched(guard)
+            try:
+                self._check_touched(guard)
+            except Failure:
+                self.stream(self.joints)
+                self.forget_command()
+                raise
+            if hand is not None:
+                self.stream(hand.step(self.joints, self.torques))
             still = still + 1 if abs(self.grip.width - last) < 2e-4 else 0
             last = self.grip.width
             if still >= 8 and n > 15:
                 return
+
+    def lifted(self) -> Steps[float]:
+        """The upward force [N] of the hand at rest, over a tenth of a second and more."""
+        if self.planner is None:
+            return 0.0
+        yield from self.wait(CALM)
+        felt = []
+        for _ in range(READINGS):
+            yield
+            own = self.planner.reaction.weight(self.joints) if self._weighs else 0.0
+            felt.append(float(self.planner.reaction.force(self.joints, self.torques - own)[2]))
+        return sum(felt) / READINGS
 
     def wait(self, seconds: float) -> Steps[None]:
         for _ in range(round(seconds / DT)):
