@@ -11,7 +11,7 @@ from common.geometry import compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import TOUCHED
-from services.manipulation.arm.trajectory import parallel
+from services.manipulation.execution.releasing import STUCK, let_go
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.execution.setting_down import probe, set_down
 from services.manipulation.grasps.grasp import approach_rotation
@@ -141,21 +141,17 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
     receptacle = robot.io.household.receptacle(name)
     yield from lower(robot, plan, held, falls=receptacle is not None and receptacle.depth > 0)
     yield from robot.wait(0.2)
-    robot.phase = "release"
-    hand = planner_of(robot).arm.hand
-    yield from robot.move_gripper(0.0 if held.opening is None else hand.share(held.opening))
-    if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
-        # GraspedObject as before, for whoever tries again.
-        raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
-    robot.grasped = None
-    robot.phase = "retract"
     try:
-        yield from robot.follow(parallel(plan.retreat, robot.joints), config.joint_speed * 0.5)
+        yield from let_go(robot, plan.retreat, held)
+        robot.grasped = None
         yield from robot.move_gripper(0.0)
         yield from robot.follow(plan.home, config.joint_speed)
     except Failure as failure:
+        if failure.code == STUCK:
+            raise
         # The object stands; another way home from here.
         robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+        robot.grasped = None
         robot.forget_command()
         yield from go_home(robot)
     x, y, _ = compose(robot.base, (*plan.spot, 0.0))

@@ -20,6 +20,9 @@ mug that lies is taken through it, and 22 mm of room leave 8 beside a finger."""
 ABOVE_EACH_OTHER = 0.7
 """Vertical part of the closing direction, as a share, from which one finger is below what they hold. Chosen: between
 the steepest hold of a plate's rim and the flattest of a bowl's."""
+PART = 0.6
+"""Share of the least extent of something below which what is between the pads is a part of it. Chosen: a chord of what
+is round is wider, its handle or wall is not."""
 LEVEL = 0.35
 """Vertical part of the approach, as a share, up to which the hand is level. Chosen: at 20 degrees the knuckles of a
 2F-85, 60 mm below its axis and 70 behind the pads, are as low as its lower finger."""
@@ -34,6 +37,8 @@ class GraspedObject:
     `rotation` (3, 3) of the hand and `offset` (3,) [m] of the pinch point are relative to the centre of the object's
     underside, in a frame with upright z in which the object is turned by `yaw` [rad].
 
+    `part`: only a part of it is between the pads, and a finger may be within what else it has.
+
     What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for
     where that cannot be.
     """
@@ -46,6 +51,7 @@ class GraspedObject:
     width: float
     yaw: float
     as_found: "GraspedObject | None" = None
+    part: bool = False
 
     @property
     def from_below(self) -> bool:
@@ -65,7 +71,7 @@ class GraspedObject:
     @property
     def entangled(self) -> bool:
         """A finger may be in its handle, or is below it: moved other than straight back the hand takes it along."""
-        return self.from_below or (self.as_found is not None and kind_of(self.kind).handle > 0)
+        return self.part or self.from_below or (self.as_found is not None and kind_of(self.kind).handle > 0)
 
     @property
     def opening(self) -> float | None:
@@ -103,16 +109,17 @@ def attach(target: Target, grasp: Grasp) -> GraspedObject:
     hand, (x, y, z) = grasp.pose, target.position
     label, kind, width = target.label, target.kind, grasp.width
     offset = hand.position - np.array([x, y, target.bottom])
-    as_found = GraspedObject(label, kind, hand.rotation, offset, target.size, width, target.yaw)
+    part = grasp.on_surface and width < PART * min(target.size)
+    as_found = GraspedObject(label, kind, hand.rotation, offset, target.size, width, target.yaw, part=part)
     if grasp.turns_over:
         turn = turned_over(hand.rotation[:, 2])
         offset = turn @ (hand.position - np.array([x, y, target.bottom + target.size[2]]))
         yaw = 2 * float(np.arctan2(hand.rotation[1, 2], hand.rotation[0, 2])) - target.yaw
-        return GraspedObject(label, kind, turn @ hand.rotation, offset, target.size, width, yaw, as_found)
+        return GraspedObject(label, kind, turn @ hand.rotation, offset, target.size, width, yaw, as_found, part)
     if grasp.axis is None:
         return as_found
     turn = lying_rotation(grasp.axis)
     length, across, up = target.size
     foot = np.array([x - length / 2 * np.cos(grasp.axis), y - length / 2 * np.sin(grasp.axis), z])
     offset = turn.T @ (hand.position - foot)
-    return GraspedObject(label, kind, turn.T @ hand.rotation, offset, (up, across, length), width, 0.0, as_found)
+    return GraspedObject(label, kind, turn.T @ hand.rotation, offset, (up, across, length), width, 0.0, as_found, part)
