@@ -27,6 +27,8 @@ CLOSED = 0.0035
 TURNING = 0.012
 """By how much less [m] something may be held than when the fingers closed, once it has turned its narrow side to them.
 Chosen: ovals of a hand's width are 6 to 10 mm wider than deep; what slips out goes on."""
+NARROWER = 1 / 3
+"""Most of its width that it has less then: what loses more is no oval, the pads slide off it. Chosen."""
 FLEX = 0.003
 """Most [m] that it may be under that: the motor goes on by 2 mm while the fingers' linkage gives under the grip."""
 
@@ -64,7 +66,8 @@ def settled(grip: Grip, at_close: float, config: ManipulationConfig) -> float:
     its narrow side between the pads then, and stays so.
     """
     narrower = at_close - grip.width
-    return grip.width if grip.holds() and config.slip_width < narrower < TURNING else at_close
+    turned = config.slip_width < narrower < min(TURNING, NARROWER * at_close)
+    return grip.width if grip.holds() and turned else at_close
 
 
 def least_width(nominal: float, doubt: float, certain: bool) -> float:

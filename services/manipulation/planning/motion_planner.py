@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from common.kinds import kind_of
 from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.arm.ik import InverseKinematics
 from services.manipulation.arm.touch import Reaction
@@ -102,7 +103,9 @@ class Planner:
         if not is_round(target) and flat_and_wide(target, arm.widest + PLAINLY):
             return
         stages = self._rules, self._on_surface
-        shapeless = target.shape in ("long", "irregular") and not target.lies
+        # By its wall beside its middle a bowl turns between the pads, and leans on what it is lifted from.
+        vessel = any(rule.hold == "rim" for rule in kind_of(target.kind).grasps)
+        shapeless = target.shape in ("long", "irregular") and not target.lies and not vessel
         for stage in reversed(stages) if shapeless else stages:
             yield [grasp for grasp in stage(target) if seen_between(target, grasp)]
 
