@@ -167,6 +167,19 @@ def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() ->
     assert sinking[low].max() < 0.5 * sinking[~low].max()
 
 
+def test_what_braked_the_arm_is_no_part_of_its_weight() -> None:
+    _, robot, _, _, _ = reaching()
+    still, found = np.arange(7.0), None
+    steps, robot.torques = robot.at_rest(), still + 9.0
+    while found is None:
+        try:
+            next(steps)
+            robot.torques = still + 0.5 * (robot.torques - still)
+        except StopIteration as stop:
+            found = stop.value
+    assert found == pytest.approx(still, abs=0.2)
+
+
 @pytest.mark.parametrize(("surface", "grounded", "ends"), [(0.02, False, True), (0.2, True, True), (0.2, False, False)])
 def test_the_hand_opens_where_it_is_felt_to_stand_or_is_on_the_surface_itself_and_nowhere_else(
     surface: float, grounded: bool, ends: bool
@@ -183,7 +196,8 @@ def test_the_hand_opens_where_it_is_felt_to_stand_or_is_on_the_surface_itself_an
     robot.joints, code = top, ""
     try:
         for _ in lower(robot, plan, held, falls=False):
-            robot.joints = np.array(node.sent(topics.ARM_COMMAND)[-1].position)
+            sent = node.sent(topics.ARM_COMMAND)
+            robot.joints = np.array(sent[-1].position) if sent else top
             deep = end.position[2] - surface - planner.reaction.position(robot.joints)[2]
             pressed = np.array([0.0, 0.0, -1.5 * STANDING]) * bool(deep > 0)
             robot.torques = planner.reaction.torques(robot.joints, pressed)

@@ -122,7 +122,7 @@ def _execute_grab(
     plan = yield from aimed(robot, plan, goal, found)
     if plan.opening is not None:
         yield from robot.move_gripper(hand.share(plan.opening))
-    free = robot.torques.copy()
+    free = yield from robot.at_rest()
     try:
         yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
         robot.phase = "grasp"

@@ -166,7 +166,8 @@ def lower(robot: Robot, plan: PlacePlan, held: GraspedObject, falls: bool) -> St
     Raises:
         Failure: BLOCKED, it met something that is not what it is put on; NOT_MET, nothing where its surface should be.
     """
-    feel, rest = planner_of(robot).reaction, robot.torques.copy()
+    feel = planner_of(robot).reaction
+    rest = yield from robot.at_rest()
     try:
         yield from set_down(robot, plan.lower, robot.guard(rest), 0.4)
     except Failure as failure:

@@ -101,7 +101,7 @@ def _execute(robot: Robot, plan: Pull, found: WorldObject) -> Steps[WorldObject]
     speed, hand = robot.config.joint_speed, planner_of(robot).arm.hand
     yield from robot.move_gripper(hand.share(plan.opening))
     yield from robot.follow(plan.reach, speed)
-    free = robot.torques.copy()
+    free = yield from robot.at_rest()
     stuck: Failure | None = None
     try:
         yield from robot.follow(plan.lower, speed * 0.5, robot.guard(free))

@@ -41,7 +41,8 @@ less."""
 BACK, SLOWLY = 0.12, 0.3
 """Way [rad] back off what was met, some 5 cm of the hand; share of the joint speed then. Chosen."""
 CALM, READINGS = 0.1, 10
-"""How long [s] the arm rests before it is weighed what the hand lifts, and readings that are taken. Chosen."""
+"""How long [s] the arm rests before its torques are taken, and how many readings of them: what braked it shows as 10 N
+on the hand for a moment. Chosen."""
 BRAKING = 5.0
 """Deceleration [rad/s^2] off what was met: what the large joints of a Kinova Gen3 can do (5.2 by the user guide)."""
 
@@ -200,17 +201,22 @@ class Robot:
             if still >= 8 and n > 15:
                 return
 
-    def lifted(self) -> Steps[float]:
-        """The upward force [N] of the hand at rest, over a tenth of a second and more."""
-        if self.planner is None:
-            return 0.0
+    def at_rest(self) -> Steps[Array]:
+        """The torques (7,) [Nm] of the arm once it is still, over some readings."""
         yield from self.wait(CALM)
         felt = []
         for _ in range(READINGS):
             yield
-            own = self.planner.reaction.weight(self.joints) if self._weighs else 0.0
-            felt.append(float(self.planner.reaction.force(self.joints, self.torques - own)[2]))
-        return sum(felt) / READINGS
+            felt.append(self.torques)
+        return np.asarray(np.mean(felt, axis=0))
+
+    def lifted(self) -> Steps[float]:
+        """The upward force [N] of the hand at rest."""
+        felt = yield from self.at_rest()
+        if self.planner is None:
+            return 0.0
+        own = self.planner.reaction.weight(self.joints) if self._weighs else 0.0
+        return float(self.planner.reaction.force(self.joints, felt - own)[2])
 
     def wait(self, seconds: float) -> Steps[None]:
         for _ in range(round(seconds / DT)):
