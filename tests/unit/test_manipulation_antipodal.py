@@ -194,3 +194,11 @@ def test_what_lies_is_rather_taken_so_that_the_hand_is_above_it_once_it_stands()
     found = [upward(g) for g in grasps(bottle)]
     assert not found[0]
     assert found == sorted(found), "those that cannot stand it up come last"
+
+
+def test_what_is_low_and_lies_across_the_way_is_also_taken_with_a_hand_that_leans() -> None:
+    across = target("long", (0.2, 0.02, 0.02), visible(rod(0.2, 0.01, math.pi / 2), np.random.default_rng(2)), yaw=1.57)
+    leaning = [g for g in grasps(across) if 0.9 < g.tilt < 1.4 and abs(float(g.pose.rotation[1, 1])) < 0.5]
+    assert leaning, "fingers before and behind it"
+    for g in leaning:
+        assert g.width < 0.03 and np.ptp(between(across, g)[:, 1]) == pytest.approx(g.width, abs=0.006)

@@ -10,7 +10,7 @@ from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.evidence import as_held, believed, explained, seen_between
 from services.manipulation.grasps.grasp import Grasp, candidates
-from services.manipulation.grasps.surface import rim_lean, surface
+from services.manipulation.grasps.surface import rim_height, rim_lean, surface
 from services.manipulation.grasps.target import Target
 
 AT = (0.6, 0.0, 0.7)
@@ -130,6 +130,17 @@ def test_a_plate_has_no_such_part() -> None:
         ]
     )
     assert grasps(seen("bowl", (0.18, 0.18, 0.025), slope)) == []
+
+
+def test_what_stands_in_a_vessel_is_not_its_rim() -> None:
+    wall = around([(0.035, -0.06), (0.055, 0.015)], 24, half=False)
+    pestle = plane((0.02, 0.05), (-0.01, 0.01), (0.0, 0.06))
+    empty = seen("bowl", (0.11, 0.11, 0.075), wall + np.array([0.0, 0.0, 0.0225]), "bowl")
+    mortar = seen("bowl", (0.11, 0.11, 0.12), np.concatenate([wall, pestle]), "bowl")
+    assert rim_height(empty) == 0.075
+    assert rim_height(mortar) == pytest.approx(0.075, abs=0.006)
+    rims = [g for g in candidates(mortar, 0.0, WIDEST) if g.rim]
+    assert rims and all(0.05 < g.height < 0.075 for g in rims)
 
 
 def test_a_hand_at_a_rim_comes_along_the_wall_that_was_seen() -> None:

@@ -47,6 +47,14 @@ def test_it_is_held_by_its_body_from_the_front() -> None:
     assert around and min(abs(g.width - 0.066) for g in around) < 0.01
 
 
+def test_fingers_close_across_the_view_where_the_far_side_was_not_seen() -> None:
+    narrow = irregular(front((0.03, 0.02), -0.1, 0.1))
+    found = antipodal(narrow, 0.0, 0.085, 0.0761)
+    along = [abs(float(g.pose.rotation[0, 1])) for g in found]
+    assert max(along) > 0.7, "they could close the other way"
+    assert np.mean(along[:5]) < 0.5
+
+
 def test_a_handle_beside_a_body_is_no_part_of_it() -> None:
     mug = irregular(
         np.concatenate([front((0.03, 0.03), -TALL / 2, TALL / 2), front((0.005, 0.005), -0.05, 0.05, 0.06)])
@@ -73,7 +81,7 @@ def test_only_into_what_is_seen_to_be_open_a_finger_goes() -> None:
 def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
     assert PLANNER.believed(SPRAY) is SPRAY
     monkeypatch.setattr(PLANNER, "_on_surface", lambda target: [])
-    thin = PLANNER.believed(SPRAY)
+    thin = PLANNER.believed(replace(SPRAY))
     below = surface(thin)[:, 2] < AT[2] - 0.05
     assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"
 

@@ -13,7 +13,7 @@ from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from common.kinds import KINDS, UNKNOWN, GraspRule, Kind, Shape, kind_of
 from common.messages.perception import ShapeFamily
 from services.manipulation.arm.arm_model import Array, Pose
-from services.manipulation.grasps.surface import rim_lean, seen_open
+from services.manipulation.grasps.surface import rim_height, rim_lean, seen_open
 from services.manipulation.grasps.target import Target
 
 HANDLE_CONE = math.radians(50)
@@ -275,7 +275,7 @@ def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
 def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
-    height, vessel, handle = target.size[2] - RIM_DEPTH, vessel_of(target), handle_of(target)
+    height, vessel, handle = rim_height(target) - RIM_DEPTH, vessel_of(target), handle_of(target)
     measured = rim_lean(target)
     lean = vessel.lean if measured is None else measured
     radius = target.size[0] / 2 - RIM_DEPTH * math.tan(lean) - vessel.wall / 2

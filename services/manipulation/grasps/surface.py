@@ -27,6 +27,9 @@ DEEP, DEEP_BY, BEYOND, OPEN = 0.022, 0.6, 0.25, 0.08
 """How far [m] below the top, by the height where that is low, and how far beyond the axis, by the radius, what was seen
 is the inside of a vessel and no lid with its knob; and the share of all points from which it is open: a mug at 2 m
 shows twice as much."""
+AT_WALL, STANDS_OUT = 0.8, 0.015
+"""Share of the radius from which what was seen of a vessel is of its wall, and how far [m] something has to reach over
+that to be no part of it: a spout reaches less."""
 UPPER_WALL = 0.03
 """How far [m] below a rim its wall is what the pads are laid on: their length less what is above it."""
 UPRIGHT, UPRIGHT_BY = 0.05, 0.7
@@ -65,6 +68,16 @@ def _stands_up(target: Target) -> bool:
     front = float(np.mean(seen[:, 2] < target.size[2] / 2 - BAND)) if len(seen) else 0.0
     tall = target.size[2] > max(UPRIGHT, UPRIGHT_BY * min(target.size[:2]))
     return not target.lies and tall and front > FRONT
+
+
+def guessed_along(target: Target) -> Array | None:
+    """The level direction (3,) in the base frame along which the extents of an object are a guess, since only its front
+    was seen; None where the shape tells its far side, or that was seen from above."""
+    if target.points is None or target.family != "irregular" or not _stands_up(target):
+        return None
+    away = np.array([*target.position[:2], 0.0])
+    found: Array = away / np.linalg.norm(away)
+    return found
 
 
 def _slices(target: Target) -> Array:
@@ -120,6 +133,20 @@ def rim_lean(target: Target) -> float | None:
     return max(0.0, math.atan2(float(high - low), run))
 
 
+def rim_height(target: Target) -> float:
+    """How high [m] over its underside the rim of a vessel is: the height of its wall as it was seen around the axis,
+    where something that stands in it, or is its handle, reaches higher; the vessel's own where it was not seen."""
+    height, radius = target.size[2], max(target.size[:2]) / 2
+    seen = _own(target)
+    wall = seen[np.hypot(seen[:, 0], seen[:, 1]) > AT_WALL * radius]
+    if not target.measured or target.lies or not len(wall) or not all_around(wall):
+        return height
+    sectors = _sectors(wall)
+    tops = [float(wall[sectors == n, 2].max()) for n in np.unique(sectors)]
+    rim = float(np.median(tops)) + height / 2
+    return rim if rim < height - STANDS_OUT else height
+
+
 def seen_open(target: Target) -> bool:
     """The far wall of a vessel was seen from inside, below its rim; True of what was not measured."""
     if target.points is None or not target.measured:
@@ -139,8 +166,13 @@ def _away(target: Target) -> Array:
 
 def all_around(points: Array) -> bool:
     """Points (n, 3) lie on all sides of the axis."""
-    sectors = np.floor(np.arctan2(points[:, 1], points[:, 0]) / math.tau * SECTORS)
-    return len(np.unique(sectors)) >= AROUND * SECTORS
+    return len(np.unique(_sectors(points))) >= AROUND * SECTORS
+
+
+def _sectors(points: Array) -> Array:
+    """The number (n,) of the sector around the axis in which each point lies."""
+    found: Array = np.floor(np.arctan2(points[:, 1], points[:, 0]) / math.tau * SECTORS)
+    return found
 
 
 def _inside(seen: Array, heights: Array, radii: Array) -> Array:
