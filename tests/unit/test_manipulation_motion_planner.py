@@ -10,7 +10,8 @@ from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
-from services.manipulation.planning.motion_planner import NEAR, Planner, inflated
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import NEAR, LastAnswers, Planner, inflated
 from services.manipulation.planning.plan_place import DEEPEST, plan_place
 from services.sim.model import own
 
@@ -108,3 +109,10 @@ def test_a_path_is_free_of_everything_by_a_margin_as_long_as_it_is_not_said_to_b
     assert not any(arm.collides(a + (far[-1] - a) * s) for a in far[:1] for s in np.linspace(0, 0.95, 40))
     assert any(arm.collides(near[0] + (end - near[0]) * s) for s in np.linspace(0, 1, 40))
     assert planner.up_to_near([arm.home, end], []) == ([arm.home, end], [])
+
+
+def test_what_was_found_for_a_target_is_found_once() -> None:
+    asked: list[Target] = []
+    answers = LastAnswers(lambda t: asked.append(t) or len(asked))  # type: ignore[func-returns-value]
+    one, other = (Target("thing", "", (0.5, 0.0, 0.7), 0.0, (0.05, 0.05, 0.05)) for _ in range(2))
+    assert [answers(t) for t in (one, one, other, one)] == [1, 1, 2, 1], "equal ones may have other points"

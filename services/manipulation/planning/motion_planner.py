@@ -1,8 +1,9 @@
 """Collision-free motions of the arm, with and without something in the hand: what grabbing and placing are made of."""
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -26,6 +27,8 @@ PLAINLY = 0.012
 what is seen in part."""
 FEWEST = 4
 """Grasps of a completed surface below which there is next to nothing to hold. Chosen: as many as are tried."""
+REMEMBERED = 4
+"""Targets of which answers are kept: one as measured, as seen, and without what is completed of it, and one more."""
 CARTESIAN_STEP = 0.02
 """Distance [m] between the configurations along a straight line. Chosen: joints in between hardly leave it."""
 MAX_JUMP = 0.6
@@ -60,6 +63,26 @@ def counted(reasons: Iterable[str]) -> str:
     return ", ".join(f"{why} x{n}" for why, n in Counter(reasons).items())
 
 
+T = TypeVar("T")
+
+
+class LastAnswers(Generic[T]):
+    """What a function answered for the last few targets: grasps on a surface take half a second to find, and one plan
+    asks for those of the same target up to three times."""
+
+    def __init__(self, answer: Callable[[Target], T]) -> None:
+        self._answer = answer
+        self._known: deque[tuple[Target, T]] = deque(maxlen=REMEMBERED)
+
+    def __call__(self, target: Target) -> T:
+        # Targets are equal whose points differ: the same one is meant.
+        found = next(((answer,) for known, answer in self._known if known is target), None)
+        if found is None:
+            found = (self._answer(target),)
+            self._known.append((target, found[0]))
+        return found[0]
+
+
 class Planner:
     """Lives in the worker thread; owns the arm's model."""
 
@@ -70,12 +93,14 @@ class Planner:
         self.reaction = Reaction(self.arm)
         self.carries = tuple(self.arm.home + np.array([0, 0, 0, 0, 0, tip, turn]) for tip, turn in _CARRY)
         self._seed = seed
+        self._on_surface = LastAnswers(self._antipodal)
+        self.believed = LastAnswers(self._believed)
 
     def rng(self) -> np.random.Generator:
         """The same draws for every plan."""
         return np.random.default_rng(self._seed)
 
-    def believed(self, target: Target) -> Target:
+    def _believed(self, target: Target) -> Target:
         """The object with its measured shape, or as it was seen. Of what is too wide, slice by slice or all around,
         only thin parts can be held, as a pot by its handle: then what was seen is not completed to the far side.
         """
@@ -115,7 +140,7 @@ class Planner:
         by_rule = (as_held(target, points, grasp) for grasp in candidates(target, arm.forward, arm.widest))
         return [grasp for grasp in by_rule if grasp is not None] + in_the_mouth(target)
 
-    def _on_surface(self, target: Target) -> list[Grasp]:
+    def _antipodal(self, target: Target) -> list[Grasp]:
         arm = self.arm
         return antipodal(target, arm.forward, arm.hand.open, arm.widest)
 
