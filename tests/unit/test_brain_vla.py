@@ -318,7 +318,31 @@ def test_a_search_that_is_held_up_on_its_way_looks_elsewhere_first() -> None:
     assert bench.texts(NAV) == ["stop"]
 
 
+def test_views_that_people_keep_it_from_are_no_looks_for_as_long_as_people_are_waited_for() -> None:
+    bench = planned()
+    see(bench, 1, found=False)
+    config, kept, count, looked = BrainConfig(), 0, 0, 0
+    while True:
+        bench.until(lambda n=count: bench.state.state == "ERROR" or len(bench.sent(POSE)) > n)  # type: ignore[misc]
+        if bench.state.state == "ERROR":
+            break
+        count += 1
+        if count > 2 and kept < 8:
+            kept += 1
+            bench.drove(bench.sent(POSE)[-1], "failed", "PERSON_IN_WAY")
+            continue
+        looked += 1
+        bench.drove(bench.sent(POSE)[-1])
+        see(bench, looked + 1, found=False)
+    assert kept * config.view_patience <= config.people_patience
+    assert looked == looks_of_an_absent_object(), "as many as with nobody around"
+
+
 def test_an_absent_object_is_reported_after_three_attempts() -> None:
+    assert 4 <= looks_of_an_absent_object() <= 16
+
+
+def looks_of_an_absent_object() -> int:
     bench = planned()
     see(bench, 1, found=False)
     count = 0
@@ -330,10 +354,10 @@ def test_an_absent_object_is_reported_after_three_attempts() -> None:
         bench.drove(bench.sent(POSE)[-1])
         see(bench, count + 1, found=False)
     # Turning on the spot twice, then two tours of what can be seen from elsewhere.
-    assert 4 <= count <= 16
     assert len({(g.x, g.y, g.theta) for g in bench.sent(POSE)}) == count
     assert "NOT_FOUND" in bench.state.detail
     assert bench.texts(SPEECH)[-1] == "say I could not find the red mug."
+    return count
 
 
 def test_a_failed_grab_looks_again_and_drives_up_again() -> None:

@@ -3,6 +3,7 @@
 from py_trees.behaviour import Behaviour
 
 from services.brain.mission.context import Context
+from services.brain.mission.remarks import PERSON
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_whether, may_be
 from services.brain.recoveries.look_closer import look_closer, unsure
@@ -37,7 +38,7 @@ def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
         name=f"view of {label}",
     )
     retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1
-    return Retry("attempt", ctx, look, retries, again=lambda: more_to_see(ctx), name=label)
+    return Retry("attempt", ctx, look, retries, again=lambda: more_to_see(ctx), name=label, free=lambda: kept_away(ctx))
 
 
 def can_go_on(ctx: Context) -> bool:
@@ -49,6 +50,13 @@ def more_to_see(ctx: Context) -> bool:
     """Looking on may help, and not everything has been looked at."""
     failure = ctx.mission.failure
     return can_go_on(ctx) and (failure is None or failure.code != "NOTHING_NEW")
+
+
+def kept_away(ctx: Context) -> bool:
+    """People kept the robot from a view, and it has not been so for as long as it waits for people on any other way."""
+    failure, config = ctx.mission.failure, ctx.config
+    lost = len(ctx.mission.search.unreached) * config.view_patience
+    return failure is not None and failure.code == PERSON and lost <= config.people_patience
 
 
 def report_not_found(ctx: Context, task: Task) -> Behaviour:

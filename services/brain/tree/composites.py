@@ -34,14 +34,24 @@ class Selector(composites.Selector):
 
 
 class Retry(decorators.Decorator):
-    """Runs its child again after a failure, at most `retries` times, a settle later, if `again()` agrees."""
+    """Runs its child again after a failure, at most `retries` times, a settle later, if `again()` agrees.
+
+    `free()`: the failure at hand was no try, and counts for none.
+    """
 
     def __init__(
-        self, node_id: str, ctx: Context, child: Behaviour, retries: int, again: Callable[[], bool], name: str = ""
+        self,
+        node_id: str,
+        ctx: Context,
+        child: Behaviour,
+        retries: int,
+        again: Callable[[], bool],
+        name: str = "",
+        free: Callable[[], bool] = lambda: False,
     ) -> None:
         super().__init__(name=shown(node_id, name), child=child)
         self.node_id = node_id
-        self._ctx, self._retries, self._again = ctx, retries, again
+        self._ctx, self._retries, self._again, self._free = ctx, retries, again, free
         self.used = 0
         self._resume_at = 0.0
 
@@ -55,9 +65,12 @@ class Retry(decorators.Decorator):
         yield from super().tick()
 
     def update(self) -> Status:
-        if self.decorated.status != Status.FAILURE or self.used >= self._retries or not self._again():
+        if self.decorated.status != Status.FAILURE:
             return self.decorated.status
-        self.used += 1
+        free = self._free()
+        if (self.used >= self._retries and not free) or not self._again():
+            return self.decorated.status
+        self.used += not free
         self._resume_at = self._ctx.now + self._ctx.config.settle
         self.feedback_message = f"retry {self.used} of {self._retries}"
         self._ctx.note(f"{self.name}: {self.feedback_message}")
