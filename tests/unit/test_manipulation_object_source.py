@@ -40,6 +40,21 @@ def test_without_that_it_is_what_it_looks_like(since: float) -> None:
     assert found.kind == "toy"
 
 
+@pytest.mark.parametrize(("off", "held", "measured", "same"), [
+    (0.03, False, True, True), (0.07, False, True, False), (0.03, True, True, False), (0.03, False, False, False),
+])  # fmt: skip
+def test_what_is_called_otherwise_from_nearer_is_grasped_where_it_was_seen_last(
+    off: float, held: bool, measured: bool, same: bool
+) -> None:
+    known, there = source(), (AT[0] + off, AT[1], AT[2])
+    renamed = structs.replace(SEEN, label="red can", position=there, seen_at=9.0, held=held, measured=measured)
+    known.update(WorldObjects(t=9.0, objects=[renamed]))
+    goal = ManipulationGoal(goal="grab", object=ObjectRef(label="red toy", position=AT))
+    found = known.resolve(goal, "", (0.0, 0.0, 0.0), 8.0)
+    assert found is not None
+    assert (found.label, found.position) == ("red toy", there if same else AT)
+
+
 def asked(item: str, label: str, household: Any) -> str:
     pose = ObjectPose(query_id="q", found=True, label=label, position=AT)
     search = SimpleNamespace(found={item: pose})

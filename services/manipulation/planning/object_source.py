@@ -19,6 +19,10 @@ FRONT = 1.2
 SHIFTED = 0.4
 """How far [m] from where a goal describes an object a newer sighting of it still means the same one. Chosen: farther
 than an object is shoved, nearer than the next surface."""
+RENAMED = 0.05
+"""How far [m] from where a goal describes an object another label is a better name for the same one. Chosen: the error
+of a sighting from 3 m; the middles of two things that stand beside each other are farther apart.
+"""
 LEFT = 0.03
 """How far [m] from where an object was it is still said to be there. Chosen: the error of two sightings."""
 DEFAULT_SIZE = (0.06, 0.06, 0.08)
@@ -83,7 +87,7 @@ class ObjectSource:
         One that was seen after `since` near the described place counts as it was seen.
         """
         if goal.object is not None:
-            seen = next((o for o in self.objects() if o.label == goal.object.label), None)
+            seen = self._as_it_is_called_now(goal.object, since)
             if seen is not None and seen.seen_at >= since and _close(seen.position, goal.object.position, SHIFTED):
                 # What it was asked for as says better what it is than its looks.
                 return structs.replace(seen, kind=goal.object.kind or seen.kind)
@@ -95,6 +99,18 @@ class ObjectSource:
             if not o.held and (wanted or (x > 0 and math.hypot(x, y) < FRONT)):
                 near.append((math.hypot(x, y), o.label, o))
         return min(near)[2] if near else None
+
+    def _as_it_is_called_now(self, ref: ObjectRef, since: float) -> WorldObject | None:
+        """The reported object that a goal describes, by its label; or, where there is none of that label any more, what
+        was seen in its place `since`: from nearer a box turns out to be a can."""
+        known = self.objects()
+        own = next((o for o in known if o.label == ref.label), None)
+        if own is not None or self._household.thing(ref.label) is not None:
+            return own
+        fresh = (o for o in known if o.measured and not o.held and o.seen_at >= since)
+        near = [o for o in fresh if _close(o.position, ref.position, RENAMED)]
+        there = min(near, key=lambda o: math.dist(o.position[:2], ref.position[:2]), default=None)
+        return structs.replace(there, label=ref.label) if there is not None else None
 
     def _described(self, ref: ObjectRef) -> WorldObject:
         known = next((o for o in self.objects() if o.label == ref.label), None)
