@@ -15,10 +15,13 @@ from common.naming.names import ALIKE, match_object, normalise, unnumbered
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
-_PLACE = re.compile(r"^(?P<thing>.+?) (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$")
+_PLACE = re.compile(
+    r"^(?P<thing>.+?)(?: (?:which|s|is|are|lies|lying|stands|standing|sits|sitting))*"
+    r" (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$"
+)
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
 FLOOR = "floor"
-"""The place of what stands on nothing else."""
+"""The place of what stands on nothing else; behind the name of a room, of what does so there."""
 MOST = 6
 """Objects of which it is told that they may be meant. Chosen: more than anybody is asked about."""
 Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
@@ -132,22 +135,30 @@ def _take_place(words: str, household: Household) -> tuple[str, str]:
     match = _PLACE.match(words)
     if match is None:
         return "", words
-    wanted = match["place"]
+    wanted, thing = match["place"], match["thing"]
     if wanted == FLOOR:
-        return FLOOR, match["thing"]
-    names = [(r.name, r.aliases) for r in household.receptacles] + [(r.name, r.aliases) for r in household.rooms]
-    for name, aliases in names:
-        if wanted in map(normalise, (name, *aliases)):
-            return name, match["thing"]
-    return "", words
+        return FLOOR, thing
+    rooms = [(r.name, r.aliases) for r in household.rooms]
+    if FLOOR in wanted.split():
+        # "The bedroom floor", "the floor in the bedroom".
+        where = " ".join(w for w in wanted.split() if w not in (FLOOR, "in"))
+        room = _named(where, rooms)
+        return (f"{room} {FLOOR}", thing) if room else ("", words)
+    place = _named(wanted, [(r.name, r.aliases) for r in household.receptacles] + rooms)
+    return (place, thing) if place else ("", words)
+
+
+def _named(wanted: str, names: Sequence[tuple[str, Sequence[str]]]) -> str:
+    """The first of several names that words are, or are another name for; "" for none."""
+    return next((name for name, aliases in names if wanted in map(normalise, (name, *aliases))), "")
 
 
 def is_at(o: WorldObject, place: str, household: Household) -> bool:
-    """An object stands on the receptacle or in the room of that name, or on the floor."""
+    """An object stands on the receptacle or in the room of that name, or on the floor, there or anywhere."""
     if o.on == place or (place == FLOOR and not o.on):
         return True
     room = household.room_at(o.position[0], o.position[1])
-    return room is not None and room.name == place
+    return room is not None and (room.name == place or (f"{room.name} {FLOOR}" == place and not o.on))
 
 
 def _by_side(found: Sequence[WorldObject], side: str, base: Pose2) -> list[WorldObject]:

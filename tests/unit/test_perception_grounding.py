@@ -116,6 +116,17 @@ def test_a_place_is_where_it_stands_or_the_room_it_is_in() -> None:
     assert meant("mug from the floor", [lost, BLUE]) == lost
 
 
+@pytest.mark.parametrize(
+    "words",
+    ["mug that's on the study floor", "mug which is lying on the floor of the office", "mug on the floor in the study"],
+)
+def test_the_floor_of_a_room_is_a_place(words: str) -> None:
+    there, elsewhere = thing("grey mug", 3.5, 2.0, on=""), thing("grey mug", -2.0, 2.0, on="")
+    assert parsed(words, SCENE, {}) == Phrase("mug", "study floor")
+    assert meant(words, [elsewhere, WHITE, there]) == there
+    assert meant(words, [elsewhere, WHITE]) is None
+
+
 def test_other_words_for_things_are_whole_words() -> None:
     found = ground("the Red Cup", MUGS, SCENE, HERE, {"cup": "mug", "beaker": "mug"})
     assert found.found == RED
