@@ -202,3 +202,21 @@ def test_what_is_low_and_lies_across_the_way_is_also_taken_with_a_hand_that_lean
     assert leaning, "fingers before and behind it"
     for g in leaning:
         assert g.width < 0.03 and np.ptp(between(across, g)[:, 1]) == pytest.approx(g.width, abs=0.006)
+
+
+def beside_a_ball(width: float) -> Array:
+    """What is seen of a ball of 60 mm, and of a bar of a width [m] beside it."""
+    ball = surface(replace(target("ball", (0.06, 0.06, 0.06)), position=(0.0, 0.0, 0.0)))
+    y, z = np.meshgrid(np.arange(-0.03, 0.031, 0.005), np.arange(-0.03, 0.04, 0.005))
+    faces = [np.stack([np.full(y.shape, x), y, z], axis=-1).reshape(-1, 3) for x in (0.05, 0.05 + width)]
+    return np.concatenate([ball, *faces])
+
+
+def test_what_is_narrow_beside_a_ball_is_no_part_of_it_and_of_other_things_a_doubtful_one() -> None:
+    seen = replace(target("long", (0.11, 0.06, 0.07), beside_a_ball(0.013)), measured=True)
+    assert min(grasp.width for grasp in grasps(replace(seen, kind="ball"))) > 0.03
+    certain, doubtful = (
+        next(n for n, grasp in enumerate(grasps(replace(seen, spread=spread))) if grasp.width < 0.02)
+        for spread in (0.0, 0.002)
+    )
+    assert certain < doubtful

@@ -9,8 +9,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from common.kinds import kind_of
 from services.manipulation.arm.arm_model import Array, Pose
 from services.manipulation.grasps.grasp import Grasp, approach_rotation, on_handle, upper_end
+from services.manipulation.grasps.grasp_verification import MEASURED
+from services.manipulation.grasps.grasped_object import PART
 from services.manipulation.grasps.pads import LONGEST, PLAY, Contact, contacts
 from services.manipulation.grasps.surface import guessed_along, surface
 from services.manipulation.grasps.target import Target
@@ -44,6 +47,12 @@ LEAST_SHARE, OF_PART = 0.25, 0.33
 THIN, FINGER = 0.012, 0.022
 """Width [m] below which a part of something thicker is the noise of its outline, and the depth of a finger behind its
 pad (Robotiq 2F-85)."""
+CHORD = 0.5
+"""Share of a ball's extent below which no chord of it is held: what is narrower is something else beside it, or its
+outermost cap, which slips out of the pads."""
+VAGUE = 0.4
+"""What it costs to take a part that may be nothing but doubt in its width: what good contacts are worth, less that the
+only part there is is taken still."""
 ASIDE = 0.008
 """Distance [m] of places across something that is too wide for the hand, of which parts are taken: a quarter of the
 pads' height."""
@@ -57,6 +66,8 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     points, centre = surface(target), np.array(target.position)
     facing = math.atan2(target.position[1], target.position[0] - forward)
     least, guessed = THIN if min(target.size) > 2 * THIN else 0.0, guessed_along(target)
+    if kind_of(target.kind).shape == "sphere":
+        least = max(least, CHORD * min(target.size))
     found: list[tuple[float, Grasp]] = []
     for rotation, tilt, off, name in _directions(target, facing):
         if on_handle(target, rotation):
@@ -127,8 +138,11 @@ def _worth(target: Target, contact: Contact, arm: Array, tilt: int, off: float, 
     preferred = 90 if target.size[2] < LOW else 25
     lever = float(np.hypot(arm[0], arm[1])) + 0.3 * abs(float(arm[2]))
     tight = max(0.0, contact.width + 2 * target.spread - widest + 0.008) / 0.008
+    # Of a part that is hardly wider than its width is doubtful, one side may be that of something else.
+    part = contact.width < PART * min(target.size)
+    vague = max(0.0, 1.0 - contact.width / (2 * (MEASURED + 2 * target.spread))) if part else 0.0
     return (
-        min(contact.share, 0.75) - 0.5 * contact.slope - 4.0 * lever - 0.3 * min(tight, 1.0)
+        min(contact.share, 0.75) - VAGUE * vague - 0.5 * contact.slope - 4.0 * lever - 0.3 * min(tight, 1.0)
         - 0.2 * abs(tilt - preferred) / 90 - 0.15 * abs(off) / (math.pi / 2)
     )  # fmt: skip
 

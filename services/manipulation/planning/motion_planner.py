@@ -129,8 +129,7 @@ class Planner:
             return
         stages = self._rules, self._on_surface
         # By its wall beside its middle a bowl turns between the pads, and leans on what it is lifted from.
-        vessel = any(rule.hold == "rim" for rule in kind_of(target.kind).grasps)
-        shapeless = target.shape in ("long", "irregular") and not target.lies and not vessel
+        shapeless = target.shape in ("long", "irregular") and not (target.lies or kind_of(target.kind).by_the_rim)
         for stage in reversed(stages) if shapeless else stages:
             yield [grasp for grasp in stage(target) if seen_between(target, grasp)]
 
