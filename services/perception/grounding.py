@@ -144,8 +144,19 @@ def _take_place(words: str, household: Household) -> tuple[str, str]:
         where = " ".join(w for w in wanted.split() if w not in (FLOOR, "in"))
         room = _named(where, rooms)
         return (f"{room} {FLOOR}", thing) if room else ("", words)
-    place = _named(wanted, [(r.name, r.aliases) for r in household.receptacles] + rooms)
+    seats = [(f.name, (_seat(f.name), *_aliases(_seat(f.name), household))) for f in household.furniture]
+    place = _named(wanted, [(r.name, r.aliases) for r in household.receptacles] + rooms + seats)
     return (place, thing) if place else ("", words)
+
+
+def _seat(furniture: str) -> str:
+    """What people call furniture by whose seat things lie on: a sofa."""
+    return furniture.removesuffix(" seat")
+
+
+def _aliases(name: str, household: Household) -> Sequence[str]:
+    """Other names of the place before furniture of that name."""
+    return next((p.aliases for p in household.places if p.name == name), ())
 
 
 def _named(wanted: str, names: Sequence[tuple[str, Sequence[str]]]) -> str:

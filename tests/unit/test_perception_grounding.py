@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from common.floor_plan import Place, Receptacle, Room
+from common.floor_plan import Box, Place, Receptacle, Room
 from common.household import Household
 from common.messages import WorldObject
 from common.naming.likeness import PLAIN, likeness, partly
@@ -125,6 +125,16 @@ def test_the_floor_of_a_room_is_a_place(words: str) -> None:
     assert parsed(words, SCENE, {}) == Phrase("mug", "study floor")
     assert meant(words, [elsewhere, WHITE, there]) == there
     assert meant(words, [elsewhere, WHITE]) is None
+
+
+@pytest.mark.parametrize("words", ["mug on the sofa", "mug from the couch", "mug on the sofa seat"])
+def test_a_piece_of_furniture_is_a_place(words: str) -> None:
+    seat = Box(name="sofa seat", center=(-2.0, 0.0, 0.2), size=(0.9, 1.9, 0.4))
+    before = Place(name="sofa", x=-1.0, y=0.0, aliases=("couch",))
+    home = msgspec.structs.replace(SCENE, furniture=(seat,), places=(before,))
+    there = thing("grey mug", -2.0, 0.0, on="sofa seat")
+    assert parsed(words, home, {}) == Phrase("mug", "sofa seat")
+    assert ground(words, [RED, there], home, HERE, {}).found == there
 
 
 def test_other_words_for_things_are_whole_words() -> None:
