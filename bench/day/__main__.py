@@ -1,13 +1,15 @@
 """A long day in one home: `python -m bench.day --hours 12 --missions 100`.
 
 A home of the generator with boxes that its map does not have and people who walk about, every service a process. Things
-are fetched, put elsewhere and asked for all day. Three services are killed in mid-mission, and once the power goes:
-every process at once, and the robot is switched on where it stands. At the start a room is named and a rule is told. At
-the end every mission that was accepted must be in the journal with an outcome, what was told must still be known, no
-claim may be false, and neither memory nor files may have grown beyond their bounds. Exit 1 otherwise.
+are fetched, put elsewhere and asked for all day, by somebody who answers the robot's questions. Three services are
+killed in mid-mission, and once the power goes: every process at once, and the robot is switched on where it stands. At
+the start a room is named and a rule is told. At the end every mission that was accepted must be in the journal with an
+outcome, what was told must still be known, no claim may be false, and neither memory nor files may have grown beyond
+their bounds. Exit 1 otherwise.
 """
 
 import argparse
+import math
 import random
 import sys
 import tempfile
@@ -51,6 +53,7 @@ class Day:
         self._draw = random.Random(seed)
         self._session: Any = None
         self._now = 0.0
+        self._answered = ""
         self.connect()
 
     def connect(self) -> None:
@@ -102,6 +105,8 @@ class Day:
         while outcome is None and monotonic() < end and self.now < began + PATIENCE:
             sleep(0.5)
             state = self.state()
+            if state.state == "CONFIRMING" and state.command == command:
+                self.answer(thing, state)
             if not mission and state.command == command and state.mission_id not in known:
                 mission = state.mission_id
                 self.account.ids[mission] = command
@@ -126,6 +131,18 @@ class Day:
         self.account.memory.append(self.robot.memory())
         self.account.disk.append(self.robot.disk())
         print(f"{self.now / 60:7.1f} min  {number:4d}  {command}: {name}{why}", flush=True)
+
+    def answer(self, thing: str, state: m.BrainState) -> None:
+        """Say what somebody who wants the thing says, once to each question that the robot listens for an answer to."""
+        speech = self.link.latest(topics.SPEECH_STATUS)
+        if speech is None or speech.state != "listening" or speech.goal_id == self._answered:
+            return
+        self._answered, words = speech.goal_id, f"the {thing}"
+        if (about := state.about) is not None:
+            objects = self.link.query(topics.SIM_TRUTH)["objects"]
+            shown = min(objects, key=lambda name: math.dist(objects[name]["position"], about))
+            words = "yes" if shown == thing else "no"
+        self.link.send(topics.SPEECH_TEXT, m.TypedText(text=words))
 
     def _command(self) -> tuple[str, str, str]:
         """A thing, what is asked of it, and where it has to be afterwards: "" for a question."""

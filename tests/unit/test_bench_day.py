@@ -48,3 +48,24 @@ def test_a_day_that_was_too_short_for_its_missions_says_so() -> None:
     assert account.left_out() == ["2 of 5 missions had no time"]
     account.outcomes["timeout"] = 2
     assert account.left_out() == []
+
+
+def test_a_question_is_answered_once_and_by_what_is_shown() -> None:
+    sent: list[str] = []
+    speech = m.SpeechStatus(state="speaking", goal_id="q.1")
+    objects = {"red box": {"position": [1.0, 2.0, 0.8]}, "red can": {"position": [3.0, 2.0, 0.8]}}
+    day: Any = object.__new__(Day)
+    day._answered = ""
+    day.link = SimpleNamespace(
+        latest=lambda topic: speech,
+        query=lambda topic: {"objects": objects},
+        send=lambda topic, said: sent.append(said.text),
+    )
+    asked = m.BrainState(state="CONFIRMING", about=(1.02, 2.0, 0.8))
+    day.answer("red box", asked)
+    assert sent == [], "the robot is still speaking"
+    for question, thing, about in (("q.2", "red box", True), ("q.3", "red can", True), ("q.4", "red can", False)):
+        speech = m.SpeechStatus(state="listening", goal_id=question)
+        for _ in range(3):
+            day.answer(thing, asked if about else m.BrainState(state="CONFIRMING"))
+    assert sent == ["yes", "no", "the red can"]
