@@ -55,6 +55,30 @@ def test_in_free_motion_the_arm_keeps_away_from_the_mast_and_not_from_where_it_h
     assert not arm.collides(free)
 
 
+def test_beside_something_near_the_arm_still_keeps_away_from_its_own_base() -> None:
+    """`bent`: within 15 mm of the mast, and not at home, where the hand is nearest to the box."""
+    planner = Planner(own().mjcf, 0)
+    arm = planner.arm
+    stretching = [arm.home + np.array([0, 0, 0, bend, 0, 0, 0]) for bend in np.arange(0.0, 3.0, 0.01)]
+    arm.set_obstacles((), 0.015)
+    bent = next(q for q in stretching if arm.collides(q))
+    arm.set_obstacles((), 0.005)
+    assert not arm.collides(bent)
+    x, y, z = arm.pose(arm.home).position
+    box = next(
+        found
+        for off in np.arange(0.0, 0.3, 0.002)
+        if not _collides(planner, found := Obstacle((x + 0.05 + off, y, z), (0.1, 0.1, 0.1)))
+    )
+    planner.surround([box], arm.home)
+    assert any("box_0" not in pair for pair in arm.contact_names(bent))
+
+
+def _collides(planner: Planner, box: Obstacle) -> bool:
+    planner.arm.set_obstacles([box], 0.0)
+    return planner.arm.collides(planner.arm.home)
+
+
 def test_in_straight_motions_the_arm_keeps_off_its_base_by_as_much_as_it_lags() -> None:
     arm = Planner(own().mjcf, 0).arm
     arm.set_obstacles((), 0.0)

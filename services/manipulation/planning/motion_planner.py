@@ -144,9 +144,10 @@ class Planner:
         return antipodal(target, arm.forward, arm.hand.open, arm.widest)
 
     def surround(self, around: Sequence[Obstacle], end: Array) -> None:
-        """Boxes, and the robot's base, with the widest transit margin that leaves `end` free, else with none."""
-        for margin in TRANSIT_MARGINS:
-            self.arm.set_obstacles(inflated(around, margin), margin)
+        """Boxes, and the robot's base, with the widest transit margins that leave `end` free, else with none: the boxes
+        come first, the base keeps what it can where something else is near."""
+        for margin, own in (*((m, m) for m in TRANSIT_MARGINS), *((0.0, m) for m in TRANSIT_MARGINS)):
+            self.arm.set_obstacles(inflated(around, margin), own)
             if not self.arm.collides(end):
                 return
         self.arm.set_obstacles(around, 0.0)
