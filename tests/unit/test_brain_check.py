@@ -103,6 +103,21 @@ def test_what_has_no_kind_is_not_lower_than_it_stood(asked: str, stood: float, h
     assert judge_placement(seen, "red toy", "delivery tray", unlisted, rest=rest).fault == fault
 
 
+@pytest.mark.parametrize(
+    ("before", "now", "width", "fault"),
+    [
+        ("bowl", "irregular", 0.1, "TOPPLED"), ("bowl", "bowl", 0.1, ""), ("box", "irregular", 0.1, ""),
+        ("round", "", 0.1, ""), ("bowl", "box", 0.09, ""), ("bowl", "box", 0.06, "TOPPLED"),
+    ],
+)  # fmt: skip
+def test_what_was_turned_and_is_so_no_more_does_not_stand(before: Any, now: Any, width: float, fault: str) -> None:
+    unlisted = msgspec.structs.replace(SCENE, things=())
+    pot = pose(label="orange mug", size=(0.1, 0.1, 0.096))
+    rest = rested(pot, "flower pot", unlisted, None, before)
+    lies = pose(label="orange mug", size=(0.1, width, 0.105))
+    assert judge_placement(lies, "orange mug", "delivery tray", unlisted, rest=rest, shape=now).fault == fault
+
+
 STANDING, LYING_BOX, LYING_WEDGE = (0.07, 0.07, 0.22), (0.22, 0.07, 0.07), (0.114, 0.055, 0.058)
 
 

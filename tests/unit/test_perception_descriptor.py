@@ -1,5 +1,7 @@
 """What an object is called when its views contradict each other."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from services.perception.detection import Detection
@@ -55,3 +57,17 @@ def test_what_was_seen_from_far_does_not_blur_what_was_seen_from_near() -> None:
     assert seen(view(2.0, 0.9), view(0.8, 1.0)) == seen(view(0.8, 1.0), view(2.0, 0.9)) == {1.0}
     assert seen(view(0.9, 0.9), view(0.8, 1.0)) == {0.9, 1.0}
     assert seen(view(2.0, 0.9), view(0.8, 1.0, whole=False)) == {0.9, 1.0}, "a part replaces nothing"
+
+
+def test_what_was_put_down_has_the_shape_that_is_seen_since() -> None:
+    seen = Detection(
+        label="", kind="cup", colour="brown", position=(1.0, 0.0, 0.7), yaw=0.0, size=(0.1, 0.1, 0.096), confidence=0.9,
+        on="desk", distance=0.6, known=False, kinds={"cup": 1.0}, colours={"brown": 1.0}, shape="bowl",
+    )  # fmt: skip
+    looks, lies = Descriptor(seen.size), replace(seen, size=(0.098, 0.097, 0.105), shape="irregular", confidence=0.68)
+    for _ in range(4):
+        looks.add(seen, 2.0, False)
+    looks.set_down()
+    looks.add(lies, 1.0, False)
+    assert (looks.shape, looks.size) == ("irregular", lies.size)
+    assert looks.name()[0] == "cup", "it is still the same"

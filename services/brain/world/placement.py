@@ -10,6 +10,7 @@ from common.geometry import quat_matrix
 from common.household import Household
 from common.kinds import kind_of, laid_on_a_side
 from common.messages import ObjectPose, ObjectRef
+from common.messages.perception import ShapeFamily
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED", "UNCHECKED"]
 TIPPED = 0.35
@@ -20,6 +21,11 @@ UPSIDE_DOWN = 2.4
 FELL, FELL_SHARE = 0.025, 0.25
 """By how much [m], and by what share of its height, something that was asked for by no known kind is lower when it fell
 over. Chosen: four times the error of a measured height."""
+TURNED: tuple[ShapeFamily, ...] = ("round", "bowl")
+"""Shapes that are the same from wherever one looks, as long as they stand."""
+OBLONG = 1.5
+"""Length by width of a box from which what was such a shape is taken for none that stands. Chosen: a can from near is
+measured to 1.1."""
 BESIDE = 0.4
 """Distance [m] between the middles of two objects up to which one is next to the other. Chosen: a hand's breadth or two
 between them, with room for the fingers."""
@@ -43,22 +49,27 @@ class Rest(msgspec.Struct, frozen=True):
     """How an object rested before the hand came.
 
     `asked`: the kind that it was asked for as, `taken`: the one that it was taken for; "" for none. `stood`: its height
-    [m] as it stood, 0 if it lay; `lay`: it has lain at some time, and may have been stood on its head since.
+    [m] as it stood, 0 if it lay, `shape` how it was measured; `lay`: it has lain at some time, and may have been stood
+    on its head since.
     """
 
     asked: str = ""
     taken: str = ""
     stood: float = 0.0
     lay: bool = False
+    shape: ShapeFamily = ""
 
 
-def rested(pose: ObjectPose, item: str, household: Household, before: Rest | None) -> Rest:
-    """What is known of the rest of an object that was asked for as `item` and is seen at `pose` before a grasp."""
+def rested(
+    pose: ObjectPose, item: str, household: Household, before: Rest | None, shape: ShapeFamily = ""
+) -> Rest:  # fmt: skip
+    """What is known of the rest of an object that was asked for as `item` and is seen at `pose`, measured as `shape`,
+    before a grasp."""
     asked, taken = kind_meant(item, household), kind_meant(pose.label, household)
     lay = _over(asked or taken, pose)
     if before is not None:
         return msgspec.structs.replace(before, lay=before.lay or lay)
-    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay)
+    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay, shape)
 
 
 def judge_placement(
@@ -69,11 +80,13 @@ def judge_placement(
     beside: ObjectRef | None = None,
     rest: Rest = Rest(),  # noqa: B008 it is frozen
     alike: bool = False,
+    shape: ShapeFamily = "",
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs. `rest`: how it rested before; `alike`:
-    by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head.
+    by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head. `shape`: how it is
+    measured now, "" if it was not.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
     seen = spec.kind if spec else kind_meant(label, household)
@@ -101,7 +114,9 @@ def judge_placement(
         words = f"I cannot tell whether the {label} {where} stands on its head"
         return Finding("UNCHECKED", words, measured)
     unknown = not rest.asked and spec is None and not stands
-    if unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood) and not in_bin:
+    lower = unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood)
+    other = (unknown or stands) and rest.stood and rest.shape in TURNED and _turned_no_more(shape, pose)
+    if spec is None and (lower or other) and not in_bin:
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
     if beside is not None:
         apart = math.dist((x, y), beside.position[:2])
@@ -109,6 +124,12 @@ def judge_placement(
             return Finding("MISPLACED", f"the {label} is {apart:.1f} m from the {beside.label}", measured)
         where += f" next to the {beside.label}"
     return Finding("", f"the {label} is {where}", measured)
+
+
+def _turned_no_more(shape: ShapeFamily, pose: ObjectPose) -> bool:
+    """Nobody would measure so what is turned and stands: a flower pot as wide as high that lies shows no axis."""
+    length, width = max(pose.size[:2]), min(pose.size[:2])
+    return shape == "irregular" or (shape == "box" and length > OBLONG * width)
 
 
 def _over(kind: str, pose: ObjectPose) -> bool:

@@ -68,6 +68,10 @@ class Descriptor:
             self.spread = max(LEAST_SPREAD, self.spread * math.sqrt(1 - share))
         self._add_points(d, moved)
 
+    def set_down(self) -> None:
+        """The hand has let go: how it rests, and what shape it shows so, is to be seen anew."""
+        self.shapes, self.spread = {}, 0.0
+
     def _add_points(self, d: Detection, moved: bool) -> None:
         """Views of like noise are merged; what was seen from much farther blurs what was seen from near."""
         if not len(d.points):

@@ -101,6 +101,7 @@ class ObjectTracker:
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
         held.yaw_seen = False
+        held.looks.set_down()
         return True
 
     def objects(self, since: float = -math.inf) -> list[WorldObject]:
