@@ -4,9 +4,11 @@ Recognised speech and hurried typing leave the apostrophes out, so both spelling
 """
 
 import re
+from functools import lru_cache
 
 from common.language.dialect import plainly_spelled
 from common.language.lexicon import A_VERB
+from common.language.normalise import REMEMBERED
 
 _OF_PEOPLE = "i|you|we|they|he|she|it|who"
 _SPELLINGS = {
@@ -188,6 +190,7 @@ _TO_BE_SAID = re.compile(r"^(?:(?:please|can you|could you|would you|go|and) )*(
 """How a sentence begins that has words in it which stay as they are."""
 
 
+@lru_cache(REMEMBERED)
 def expand(text: str) -> str:
     """Normalised text with `what's` written as `what is` and `plus` as `and`."""
     if not _TO_BE_SAID.match(text):

@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.itself import WORDS as OF_ITSELF
 from common.language.itself import about_itself
-from common.language.normalise import DETERMINERS, Words, normalise
+from common.language.normalise import DETERMINERS, REMEMBERED, Words, normalise
 from common.language.noun_phrase import SIDES, SMALL, WHICH
 from common.language.pattern import ANY, Pattern, Slots, first_words, words_of
 from common.language.politeness import without_politeness
@@ -44,6 +45,7 @@ def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:
                 yield wording, slots
 
 
+@lru_cache(REMEMBERED)
 def asks_for(text: str, *actions: Action) -> Action | None:
     """The first of the `actions` that a whole text asks for, with or without politeness; None if it asks for none."""
     whole = without_fillers(expand(normalise(text)))

@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Literal
 
-from common.language.normalise import DETERMINERS, Words
+from common.language.normalise import DETERMINERS, REMEMBERED, Words
 
 Which = Literal[
     "", "left", "right", "nearest", "farthest", "biggest", "smallest", "tallest", "shortest", "first", "second",
@@ -124,6 +125,7 @@ def without_tail(words: Words) -> Words:
     return words
 
 
+@lru_cache(REMEMBERED)
 def without_clause(words: Words) -> Words:
     """Words without `that is` at their beginning."""
     text = " ".join(words)

@@ -2,6 +2,9 @@
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
+
+from common.language.normalise import REMEMBERED
 
 LONG_WORD = 5
 """Letters from which on a name may be taken for a slip of another (chosen: `cat` is no slip of `can`)."""
@@ -65,6 +68,7 @@ def _alike(word: str, known: set[str]) -> str | None:
     return alike[0] if len(alike) == 1 else None
 
 
+@lru_cache(REMEMBERED)
 def _sound(word: str) -> str:
     """How a word is spoken, roughly: one sign for letters that sound alike, no silent ones."""
     for spelling, sound in _SOUNDS:
@@ -87,6 +91,7 @@ def _nearest(word: str, known: set[str]) -> str | None:
     return near[0] if len(near) == 1 else None
 
 
+@lru_cache(10 * REMEMBERED)
 def distance(a: str, b: str) -> int:
     """Letters to insert, delete, exchange or swap with their neighbour (optimal string alignment)."""
     rows = [list(range(len(b) + 1))]
