@@ -8,7 +8,7 @@ from common.language.normalise import normalise
 from common.language.politeness import LONG_SPEECH, without_lead, without_politeness
 
 _FILLER = re.compile(
-    r"\s*\b(?:u+m+|u+h+(?!,? huh\b)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
+    r"\s*\b(?:u+m+|(?<!^uh )u+h+(?!,? huh\b| uh$)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
     r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it)|"
     r"what do you call (?:it|them|that|those))"
     r"(?:,? (?:again|now|then|so|well|oh|ah|yes|yeah|ok|okay|right|no)\b)+,?|\blet me think,? (?=the|a|my)"
@@ -17,7 +17,7 @@ _FILLER = re.compile(
 )
 """Sounds of somebody who thinks while speaking."""
 _STUTTER = re.compile(
-    r"\b(?!(?:no|stop|cancel|abort|very|really|hurry|quick|again|wait|chop|tidy|clean|clear)\b|do,? do not\b)"
+    r"\b(?!(?:no|uh|stop|cancel|abort|very|really|hurry|quick|again|wait|chop|tidy|clean|clear)\b|do,? do not\b)"
     r"(\w+)(?:,? \1\b)+"
     r"|\b((?!no\b|and\b|then\b)[a-z]{2,}(?: (?!and\b|then\b|or\b)\w+){1,3})(?:,? \2\b)+"
 )

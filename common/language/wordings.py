@@ -62,7 +62,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
-        "no", "no no [no] | (neither | none) [[one] of (them | those | these | the two)] [thanks "
+        "no", "no no [no] | uh uh | (neither | none) [[one] of (them | those | these | the two)] [thanks "
         "| please] | not (either | any) "
         "[of (them | those | these | the two)] | (goodness | heavens | gosh | god | hell "
         "| dear me | certainly) (no | not) | (no | nope "

@@ -65,16 +65,21 @@ def _says_only(words: Words, kind: Literal["yes", "no", "cancel"]) -> bool:
 
 
 def corrected(command: str, correction: str, household: Household) -> str:
-    """The command with the thing or place exchanged that the correction names; a whole new command replaces it."""
+    """The command with the thing or place exchanged that the correction names; a whole new command replaces it.
+
+    "" after a correction without a word.
+    """
 
     def is_place(words: Words) -> bool:
         return is_destination(" ".join(words), household)
 
     if contrast := _CONTRAST.match(correction):
         correction = with_qualities(command, contrast["wrong"], contrast["right"])
+    if not correction:
+        return ""
     if correction.split()[:1] in (["not"], ["but"]):
         correction = next(iter(commands(correction)), correction)
-    thing = correction if correction.split()[:1] and correction.split()[0] in DETERMINERS else f"the {correction}"
+    thing = correction if correction.split()[0] in DETERMINERS else f"the {correction}"
     if set(correction.split()) <= household.words.colours.keys():
         thing = f"the {correction} one"
     if _is_command(correction):
