@@ -5,6 +5,8 @@ from itertools import permutations
 from pathlib import Path
 from typing import Literal, NamedTuple
 
+import msgspec
+
 from common import config
 from common.household import load_household
 from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
@@ -18,7 +20,10 @@ from services.planner.world import believed
 
 Verdict = Literal["right", "asked rightly", "asked back", "not understood", "wrong"]
 DATA = Path(__file__).parent / "data" / "sentences.tsv"
+LEARNING = DATA.with_name("learning.tsv")
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
+PLAINLY = msgspec.structs.replace(CONFIG, guess=False)
+"""Settings of a planner that does not guess, so that no guess is learnt from."""
 HOME = load_household("apartment")
 NOW = 500.0
 MUG, CAN, BLOCK, BOTTLE, BOX = (
@@ -62,14 +67,19 @@ class Sentence(NamedTuple):
     right: str
 
 
-def lists() -> dict[str, list[Sentence]]:
-    """The rows of tests/data/sentences.tsv by the number of their list."""
+def lists(path: Path = DATA) -> dict[str, list[Sentence]]:
+    """The rows of tests/data/sentences.tsv, or of another such file, by the number of their list."""
     found: dict[str, list[Sentence]] = {}
-    for line in DATA.read_text(encoding="utf-8").splitlines():
+    for line in path.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
             number, *row = line.split("\t")
             found.setdefault(number, []).append(Sentence(*row))
     return found
+
+
+def all_lists() -> dict[str, list[Sentence]]:
+    """The lists that are tested, and those that are only learnt from."""
+    return {**lists(), **lists(LEARNING)}
 
 
 class Understood(NamedTuple):
@@ -121,7 +131,7 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
         return [o for o in flat if o.label != about], about, history
     if tag not in ("last", "failed"):
         return flat, "", History(said="x")
-    done = planned(about, FLAT, "", History())
+    done = planned(about, FLAT, "", History(), PLAINLY)
     label = next((s.object for s in done.steps if s.object), "")
     origin = next((o.on for o in FLAT if o.label == label), "")  # "" of what nobody has listed, and of a rule's things
     if not origin and tag == "last":
@@ -137,7 +147,7 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     if tag == "failed":
         spoken = f"I could not find the {label}."
         last = MissionOutcome(id="m", command=about, outcome="failed", reason=spoken, spoken=spoken, t=NOW - 5)
-        return flat, "", History(last=last, objects=[label])
+        return flat, "", History(last=last, objects=[label] if label else [])
     receptacle = HOME.receptacle(target)
     assert receptacle is not None
     x, y, z = receptacle.center
@@ -182,7 +192,7 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
         "none()" in sentence.right
         and not acts
         and not found.looks
-        and found.kind in ("", "no", "queue", "encouragement")
+        and found.kind in ("", "no", "queue", "encouragement", "idle")
     ):
         return "right"
     if sentence.right == "none()" and found.kind in ("cancel", "stop"):

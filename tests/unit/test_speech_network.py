@@ -6,8 +6,8 @@ import numpy as np
 import onnx
 import pytest
 
+from common.inference import session
 from common.speech_weights import folder as models
-from services.speech.recognise.inference import session
 from services.speech.recognise.moonshine import networks
 from services.speech.recognise.packed_network import BLOCK, NetworkBuilder
 from services.speech.recognise.token_trie import BOS

@@ -2,16 +2,15 @@
 
 Things and places are replaced by what they are in the candidate, so that nothing depends on their names; then single
 words, their stems, pairs, pairs with a word between and triples count, the verb's class and the preposition before each
-thing and place, and how many of the named things and places the candidate leaves aside. Hashing: Weinberger et al.,
-"Feature hashing for large scale multitask learning", 2009.
+thing and place, and how many of the named things and places the candidate leaves aside.
 """
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
-from zlib import crc32
 
+from common.language.log_linear import UNKNOWN, hashed
 from common.language.mood import forbids, is_asked, is_told
 from common.language.normalise import Words
 from common.language.politeness import without_politeness
@@ -19,9 +18,7 @@ from common.language.verb_classes import classes
 from services.planner.grammar.chunks import POINTING, Chunk
 from services.planner.semantic.forms import MARK, Candidate
 
-BITS = 18
-"""Features are counted modulo 2**BITS (chosen: 80 000 features are seen in tests/data, so few share a number)."""
-UNKNOWN, BEGIN, END = "<unknown>", "<begin>", "<end>"
+BEGIN, END = "<begin>", "<end>"
 _PREPOSITIONS = frozenset({
     "to", "into", "onto", "towards", "in", "on", "at", "inside", "from", "off", "of", "by", "near", "beside", "next",
     "with", "under", "over",
@@ -68,8 +65,8 @@ def _signs(words: Words, found: Sequence[Chunk]) -> list[str]:
 
 
 def features(said: Said, candidate: Candidate) -> list[int]:
-    """Numbers below 2**BITS of the features of one candidate; a feature counts once each time it is listed."""
-    return [crc32(name.encode()) % (1 << BITS) for name in _names(said, candidate)]
+    """Numbers of the features of one candidate."""
+    return hashed(_names(said, candidate))
 
 
 def _names(said: Said, candidate: Candidate) -> Iterator[str]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.recognise.inference import session
+from common.inference import session
 
 LAYERS, HEADS, HEAD_SIZE, ROTARY_SIZE = 8, 8, 52, 32
 """Moonshine base: decoder layers, attention heads, numbers per head, and how many of them are rotated by position."""

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import speech_weights
+from common.inference import session
 from services.speech.prepared import ENCODER, prepared
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
-from services.speech.recognise.inference import session
 from services.speech.recognise.token_trie import BOS, EOS, AnyTokens, TokenTrie, letters, read_tokens
 
 Array = NDArray[np.float32]

@@ -13,7 +13,7 @@ import onnx
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-from services.speech.recognise.inference import options
+from common.inference import options
 
 BLOCK = 32
 """Weights per scale of `MatMulNBits`; the operator takes 16, 32, 64 and so on."""

@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 
+from common.inference import session
 from common.process.host import return_memory
 from common.sound import RATE, Samples, resample
 from services.speech.prepared import prepared
-from services.speech.recognise.inference import session
 from services.speech.speak.pronounce import SAMPLE_RATE, LeanHibari
 
 MAX_CHARACTERS = 400
