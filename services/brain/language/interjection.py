@@ -14,8 +14,13 @@ from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import without_politeness
 from common.language.wording import Action
+from services.brain.language.at_work import likeliest
 
-Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside", "encouragement"]
+Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside", "encouragement", "idle"]
+SURE, FIRM = 0.4, 0.8
+"""Least probability of a sense that no wording says, and of another than a wording says (chosen on lists left out)."""
+_SAME = {"stop": "cancel", "replace": "come_back"}
+"""Kinds that say more than a sense of the model."""
 _LATER = re.compile(
     r"^(?:and )?(?:"
     r"(?:when|once|as soon as|after) you(?: are| have)?(?: all)? "
@@ -94,27 +99,55 @@ _PARTICLES = frozenset({"up", "down", "away", "back"})
 
 
 class Interjection(msgspec.Struct, frozen=True):
-    """`text`: the command or question without the words that say when; an encouragement asks for neither."""
+    """`text`: the command or question without the words that say when.
+
+    An encouragement asks for neither, and what is idle is not meant for the robot.
+    """
 
     kind: Kind
     text: str
 
 
 def interjection(said: str, doing: str = "") -> Interjection:
-    """What a sentence means to a mission under way; a command without a word about when is for later.
+    """What a sentence means to a mission under way: by its wording, or as it is most likely meant.
 
     `doing`: the command under way, which a sentence that forbids something of it calls off.
     """
-    words = without_fillers(expand(normalise(said, ",")))
-    found = _control(said, words) or _replacement(said, words, doing)
-    if found is None and (later := _behind(words, doing)):
-        return Interjection("queue", later)
-    found = found or _timed(said, words)
-    if found is not None:
+    found = by_wording(said, doing)
+    decided = found.kind == "encouragement" or _FORBIDDEN.match(_words(said))
+    if decided or asks_for(said, "stop", "cancel", "come_back"):
+        return found
+    sense, p = likeliest(said, doing, found.kind)
+    if p < least(said, doing) or found.kind in (sense, _SAME.get(sense)):
+        return found
+    return Interjection("cancel" if sense == "stop" else sense, said)
+
+
+def least(said: str, doing: str) -> float:
+    """How likely another sense than that of the wording has to be, to count."""
+    return FIRM if _worded(said, _words(said), doing) else SURE
+
+
+def by_wording(said: str, doing: str = "") -> Interjection:
+    """The same by the wordings alone; a command without a word about when is for later."""
+    words = _words(said)
+    if (found := _worded(said, words, doing)) is not None:
         return found
     if is_question(said):
         return Interjection("aside", said)
     return Interjection("queue" if without_politeness(words) else "encouragement", said)
+
+
+def _words(said: str) -> str:
+    return without_fillers(expand(normalise(said, ",")))
+
+
+def _worded(said: str, words: str, doing: str) -> Interjection | None:
+    """What the words about when, or against what is under way, make of it; None without such."""
+    found = _control(said, words) or _replacement(said, words, doing)
+    if found is None and (later := _behind(words, doing)):
+        return Interjection("queue", later)
+    return found or _timed(said, words)
 
 
 def _control(said: str, words: str) -> Interjection | None:

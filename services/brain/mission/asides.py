@@ -33,6 +33,8 @@ class Asides:
                 self._queue(command, said.text)
             case "encouragement":
                 self.speak("I am at it.")
+            case "idle":
+                self._ctx.note("not meant for me", command.text)
             case "aside":
                 self._waiting, self._asked, self._since = command, "", self._ctx.now
             case _:

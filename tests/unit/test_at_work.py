@@ -1,0 +1,43 @@
+"""What is said to a robot at work, in words that no wording has."""
+
+import pytest
+
+from services.brain.language.at_work import SENSES, likeliest
+from services.brain.language.interjection import interjection
+from tests.everyday import lists, understand, verdict
+
+
+@pytest.mark.parametrize(
+    ("said", "kind"),
+    [
+        ("it's turned up, it was in my pocket the whole time", "cancel"),
+        ("she is so tall for her age isn't she", "idle"),
+        ("could you take the red can to the kitchen once that's sorted", "queue"),
+        ("how much longer will you be", "aside"),
+    ],
+)
+def test_it_is_taken_as_it_is_most_likely_meant(said: str, kind: str) -> None:
+    assert interjection(said, "find the glasses").kind == kind
+
+
+@pytest.mark.parametrize("said", ["stop", "stop that", "cancel", "come back", "please stop now"])
+def test_plain_words_that_end_a_mission_are_not_left_to_a_model(said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("services.brain.language.interjection.likeliest", lambda *heard: ("idle", 1.0))
+    assert interjection(said, "bring me the apple").kind in ("stop", "cancel", "come_back")
+
+
+def test_a_wording_stands_until_the_model_is_sure(monkeypatch: pytest.MonkeyPatch) -> None:
+    for p, kind in ((0.7, "replace"), (0.9, "queue")):
+        monkeypatch.setattr("services.brain.language.interjection.likeliest", lambda *heard, p=p: ("queue", p))
+        assert interjection("bring me the can instead", "bring me the apple").kind == kind
+
+
+def test_probabilities_are_of_the_senses() -> None:
+    sense, p = likeliest("never mind, i have found it", "find the glasses", "cancel")
+    assert sense in SENSES and 1 / len(SENSES) < p <= 1
+
+
+def test_sentences_at_work_that_nobody_worked_on() -> None:
+    rows = [row for row in lists()["36"] if row.context.startswith("busy:")]
+    verdicts = [verdict(row, understand(row)) for row in rows]
+    assert verdicts.count("right") >= 0.65 * len(rows) and verdicts.count("wrong") <= 0.15 * len(rows)
