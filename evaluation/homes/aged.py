@@ -45,7 +45,8 @@ def aged(home: Scene, rng: np.random.Generator) -> Scene:
                 break
     after = floor.reached((home.home.x, home.home.y))
     planner = _planner(home, left)
-    people = [_somebody(rng, floor, after, planner, n) for n in range(int(rng.integers(PEOPLE[0], PEOPLE[1] + 1)))]
+    count = int(rng.integers(PEOPLE[0], PEOPLE[1] + 1)) if (after & floor.beyond(NOT_AT)).any() else 0
+    people = [_somebody(rng, floor, after, planner, n) for n in range(count)]
     light = sorted({b.name.removesuffix(" back") for b in home.furniture if b.name.startswith(LIGHT)})
     gone = {name for name in light if rng.random() < GONE}
     stays = tuple(b for b in home.furniture if b.name.removesuffix(" back") not in gone)

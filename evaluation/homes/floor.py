@@ -93,6 +93,11 @@ class Floor:
         where = np.unravel_index(int(np.argmax(np.where(inside, self.clearance(), -1.0))), inside.shape)
         return float(self._x[where]), float(self._y[where])
 
+    def beyond(self, distance: float) -> Mask:
+        """The cells farther than that [m] from the robot's start."""
+        found: Mask = np.hypot(self._x, self._y) > distance
+        return found
+
     def somewhere(self, rng: np.random.Generator, within: Mask) -> Vec2:
         """A random point of the cells `within`."""
         rows, columns = np.nonzero(within)

@@ -24,6 +24,8 @@ from services.sim.layout import place_objects
 OBJECTS = flat().objects[:6]
 HIGH_BLOCK = 41311
 """Of a new home in which a block stands higher than the arm takes blocks from."""
+SMALL = 72101
+"""Of an aged home of which the robot reaches nothing that is more than a step away from its start."""
 DRAWN = range(12)
 """Seeds of the homes that every test looks at."""
 
@@ -99,6 +101,11 @@ def test_too_many_rooms_for_a_home_are_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("evaluation.homes.home.DRAWS", 0)
     with pytest.raises(NoHome, match="no home of 3 rooms"):
         draw_home(0, OBJECTS, 3)
+
+
+def test_nobody_walks_about_where_there_is_no_room_beside_the_robot() -> None:
+    world = aged(SMALL).scene
+    assert world is not None and not any(o.social for o in world.obstacles)
 
 
 def test_what_people_carry_about_is_gone_from_an_aged_home_and_still_on_its_map() -> None:
