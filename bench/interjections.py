@@ -1,7 +1,7 @@
 """The model of what is said to a robot at work: learnt from tests/data, measured by leaving whole lists out.
 
 python -m bench.interjections                     # learns and writes services/brain/language/at_work.npz
-python -m bench.interjections --without 36        # learns from all the others
+python -m bench.interjections --without 36 37    # learns from all the others
 python -m bench.interjections --apart L4 --apart L2 L3   # what wordings and model make of lists that it has not seen
 """
 

@@ -64,7 +64,8 @@ LEAST = {
     "33": Least(0.39, 0.67, 9),
     "34": Least(0.56, 0.59, 14),
     "35": Least(0.74, 0.84, 8),
-    "36": Least(0.48, 0.62, 55),
+    "36": Least(0.5, 0.7, 46),
+    "37": Least(0.61, 0.83, 19),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 

@@ -27,6 +27,8 @@ FIRM = 0.8
 """Least probability of a guess that a plan for things all known has to agree with (chosen on lists left out)."""
 _HANDLES = frozenset({"grasp", "place", "release", "return"})
 """Actions by which plans differ that do something else; others go before these, or move nothing."""
+_EXCEPT = frozenset({"but", "except", "excluding", "without"})
+"""Words behind which stands what no guess takes account of."""
 _NOTHING = "there is nothing to guess"
 
 
@@ -130,7 +132,7 @@ def contradicted(words: Words, steps: Sequence[PlanStep], likely: Guess, known: 
     new = {word for label in unlisted for word in label.split()}.intersection(words)
     if new & {word for text in likely.texts for word in text.split()}:
         return False  # the guess only knows a part of the name, "can" of "can of paint"
-    if not new and (guessed or set(others) < set(done)):
+    if not new and (guessed or set(others) < set(done) or not _EXCEPT.isdisjoint(words)):
         return False  # the guess knows less, or leaves a part aside
     return likely.p >= (SURE if new else FIRM)
 

@@ -39,7 +39,7 @@ def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject]
         if " ".join(words) in PRONOUNS | PLURAL_PRONOUNS:
             names |= {m.object.label for m in pronoun(builder, " ".join(words) in PLURAL_PRONOUNS)}
             continue
-        if spots := builder.vocabulary.spot(words):
+        if builder.vocabulary.noun(" ".join(bare)) is None and (spots := builder.vocabulary.spot(words)):
             places |= {s.name for s in spots}
             continue
         if all(w in builder.vocabulary.colours for w in bare):
