@@ -136,8 +136,9 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     seen = ctx.known_object(label)
     # A vessel that lay may have been stood on its mouth, and then looks like a can.
     alike = any(kind_of(k).ends_alike for k in (seen.kind, *seen.kinds[:1])) if seen else False
-    shape = seen.shape if seen else ""
-    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, shape)
+    shape, before = seen.shape if seen else "", mission.failure
+    doubted = before is not None and (before.stage, before.code) == ("RELEASING", "TOPPLED")
+    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, shape, doubted)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:

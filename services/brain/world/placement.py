@@ -81,12 +81,13 @@ def judge_placement(
     rest: Rest = Rest(),  # noqa: B008 it is frozen
     alike: bool = False,
     shape: ShapeFamily = "",
+    doubted: bool = False,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs. `rest`: how it rested before; `alike`:
     by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head. `shape`: how it is
-    measured now, "" if it was not.
+    measured now, "" if it was not; `doubted`: a look before has shown that it does not stand.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
     seen = spec.kind if spec else kind_meant(label, household)
@@ -115,7 +116,7 @@ def judge_placement(
         return Finding("UNCHECKED", words, measured)
     unknown = not rest.asked and spec is None and not stands
     lower = unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood)
-    other = (unknown or stands) and rest.stood and rest.shape in TURNED and _turned_no_more(shape, pose)
+    other = (unknown or stands) and rest.stood and rest.shape in TURNED and _turned_no_more(shape, pose, doubted)
     if spec is None and (lower or other) and not in_bin:
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
     if beside is not None:
@@ -126,9 +127,12 @@ def judge_placement(
     return Finding("", f"the {label} is {where}", measured)
 
 
-def _turned_no_more(shape: ShapeFamily, pose: ObjectPose) -> bool:
-    """Nobody would measure so what is turned and stands: a flower pot as wide as high that lies shows no axis."""
+def _turned_no_more(shape: ShapeFamily, pose: ObjectPose, doubted: bool) -> bool:
+    """Nobody would measure so what is turned and stands: a flower pot as wide as high that lies shows no axis. Once in
+    doubt only a turned shape tells that it stands."""
     length, width = max(pose.size[:2]), min(pose.size[:2])
+    if doubted:
+        return bool(shape) and shape not in TURNED
     return shape == "irregular" or (shape == "box" and length > OBLONG * width)
 
 
