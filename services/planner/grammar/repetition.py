@@ -7,7 +7,7 @@ from common.language.contractions import expand
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
 from common.language.lexicon import HANDLING
 from common.language.meaning import readings
-from common.language.normalise import DETERMINERS, normalise
+from common.language.normalise import DETERMINERS, normalise, without_determiners
 from common.language.politeness import without_politeness
 from common.messages import History
 
@@ -43,6 +43,10 @@ _TOO = re.compile(
 )
 
 
+_QUANTITIES = frozenset({"all", "both", "other", "another", "every", "any"})
+"""Words before a noun, beside determiners, with which a thing begins."""
+
+
 def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPlace) -> str:
     """The command that is meant, by the last one where it refers to that; else the command as it is."""
     last = told.last.command if told.last is not None else ""
@@ -69,8 +73,10 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         thing = found["thing"] or found["other"]
         if found["other"] and last.split()[0] in HANDLING and _PLACED.search(thing):
             return f"{last.split()[0]} {thing}"
-        if thing.split()[0] in DETERMINERS:
-            return replaced(normalise(last), thing, is_place) or command
+        if thing.split()[0] in DETERMINERS | _QUANTITIES:
+            thing, _, place = re.sub(r" off ", " from ", thing).partition(" from ")
+            again = replaced(normalise(last), thing, is_place)
+            return (_from(again.split(), place) if again and place else again) or command
     return command
 
 
@@ -83,7 +89,7 @@ def _elsewhere(said: str, is_place: IsPlace) -> str:
 def _from(last: list[str], place: str) -> str:
     """The last command with where its thing is to be looked for."""
     end = next(iter(noun_phrases(last)), (0, len(last)))[1]
-    return " ".join((*last[:end], "from the", place, *last[end:]))
+    return " ".join((*last[:end], "from the", *without_determiners(tuple(place.split())), *last[end:]))
 
 
 def _instead(said: str, last: str, is_place: IsPlace) -> str:
