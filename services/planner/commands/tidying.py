@@ -9,7 +9,7 @@ from common.language.pattern import Slots
 from common.naming.words import Destination
 from services.planner.commands.hand import take
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.senses import Spot
+from services.planner.grammar.senses import WHOLE, Spot
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 from services.planner.reference.places import spot
@@ -19,15 +19,17 @@ from services.planner.world import BelievedObject
 
 
 def put_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, _all(slots["thing"]), prefer_held=True), builder.world.household.words.tidy)
+    _sort(builder, referents(builder, _all(builder, slots["thing"]), prefer_held=True), builder.world.household.words.tidy)
 
 
 def throw_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, _all(slots["thing"]), prefer_held=True), builder.world.household.words.throw)
+    _sort(builder, referents(builder, _all(builder, slots["thing"]), prefer_held=True), builder.world.household.words.throw)
 
 
-def _all(words: Words) -> Words:
-    """`anything on the desk`, to be put away, is all of it."""
+def _all(builder: PlanBuilder, words: Words) -> Words:
+    """`anything on the desk`, to be put away, is all of it, and `it all` is what is at the place that was spoken of."""
+    if " ".join(words) in WHOLE and builder.spot is not None:
+        return ("everything", "on", *builder.spot.name.split())
     return ("everything", *words[1:]) if words[0] == "anything" else words
 
 
