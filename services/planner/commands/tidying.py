@@ -19,11 +19,13 @@ from services.planner.world import BelievedObject
 
 
 def put_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, _all(builder, slots["thing"]), prefer_held=True), builder.world.household.words.tidy)
+    meant = referents(builder, _all(builder, slots["thing"]), prefer_held=True)
+    _sort(builder, meant, builder.world.household.words.tidy)
 
 
 def throw_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, _all(builder, slots["thing"]), prefer_held=True), builder.world.household.words.throw)
+    meant = referents(builder, _all(builder, slots["thing"]), prefer_held=True)
+    _sort(builder, meant, builder.world.household.words.throw)
 
 
 def _all(builder: PlanBuilder, words: Words) -> Words:
