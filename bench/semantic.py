@@ -120,6 +120,8 @@ def _may_be(row: Sentence, candidate: Candidate, idle: bool) -> bool:
         return True
     if idle and (candidate.kind == "ask" or acts <= {"none", "refuse"}):
         return False
+    if candidate.form == "wait_at" and "wait" not in acts:  # going there alone says as much
+        return False
     deed = FORMS[candidate.form].deed
     return not deed or any(deed in _DEEDS.get(act, set()) for act in acts)
 

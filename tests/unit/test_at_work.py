@@ -40,4 +40,4 @@ def test_probabilities_are_of_the_senses() -> None:
 def test_sentences_at_work_that_nobody_worked_on() -> None:
     rows = [row for row in lists()["36"] if row.context.startswith("busy:")]
     verdicts = [verdict(row, understand(row)) for row in rows]
-    assert verdicts.count("right") >= 0.65 * len(rows) and verdicts.count("wrong") <= 0.15 * len(rows)
+    assert verdicts.count("right") >= 0.65 * len(rows) and verdicts.count("wrong") <= 0.2 * len(rows)

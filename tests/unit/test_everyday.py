@@ -62,10 +62,10 @@ LEAST = {
     "31": Least(0.84, 0.94, 0, slow=False),
     "32": Least(0.69, 0.82, 4),
     "33": Least(0.39, 0.67, 9),
-    "34": Least(0.56, 0.59, 14),
+    "34": Least(0.56, 0.59, 15),
     "35": Least(0.74, 0.84, 8),
-    "36": Least(0.5, 0.7, 46),
-    "37": Least(0.61, 0.83, 19),
+    "36": Least(0.5, 0.71, 47),
+    "37": Least(0.61, 0.84, 20),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
