@@ -118,13 +118,15 @@ def test_what_was_turned_and_is_so_no_more_does_not_stand(before: Any, now: Any,
     assert judge_placement(lies, "orange mug", "delivery tray", unlisted, rest=rest, shape=now).fault == fault
 
 
-@pytest.mark.parametrize(("now", "fault"), [("box", "TOPPLED"), ("irregular", "TOPPLED"), ("bowl", ""), ("", "")])
-def test_what_one_look_showed_to_lie_stands_where_the_next_shows_its_shape(now: Any, fault: str) -> None:
+def test_of_two_looks_that_differ_the_better_is_not_believed() -> None:
     unlisted = msgspec.structs.replace(SCENE, things=())
     pot = pose(label="orange mug", size=(0.1, 0.1, 0.096))
     rest = rested(pot, "flower pot", unlisted, None, "bowl")
-    found = judge_placement(pot, "orange mug", "delivery tray", unlisted, rest=rest, shape=now, doubted=True)
-    assert found.fault == fault
+    first = judge_placement(pot, "orange mug", "delivery tray", unlisted, rest=rest, shape="irregular")
+    assert (first.fault, first.unlike) == ("TOPPLED", True)
+    for before, fault in ((False, ""), (True, "TOPPLED")):
+        found = judge_placement(pot, "orange mug", "delivery tray", unlisted, rest=rest, shape="bowl", unlike=before)
+        assert found.fault == fault
 
 
 STANDING, LYING_BOX, LYING_WEDGE = (0.07, 0.07, 0.22), (0.22, 0.07, 0.07), (0.114, 0.055, 0.058)

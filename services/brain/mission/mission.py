@@ -101,7 +101,8 @@ class Delivery(msgspec.Struct):
     `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
     `lost`: labels of what fell from the hand; `rests`: how objects rested, by the words they were asked for with;
     `around`: by id, what stood near when the hand began to work; `absent`: by label, from where [map] an object was
-    taken that was not seen where it had been put down, and when [s] that was.
+    taken that was not seen where it had been put down, and when [s] that was; `unlike`: the label of what a look since
+    it was put down showed in a shape that it has not where it stands.
     """
 
     grabbed: bool = False
@@ -113,6 +114,7 @@ class Delivery(msgspec.Struct):
     unchecked: list[str] = []
     around: dict[str, Stood] = {}
     absent: dict[str, tuple[m.Vec3, float]] = {}
+    unlike: str = ""
 
 
 class Mission(msgspec.Struct):

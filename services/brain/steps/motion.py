@@ -220,7 +220,7 @@ class Release(Manipulate):
         return super().fail_with(failure)
 
     def succeed(self, result: Result) -> Status:
-        self.ctx.mission.delivery.put_down = self.ctx.gripper.holding
+        self.ctx.mission.delivery.put_down, self.ctx.mission.delivery.unlike = self.ctx.gripper.holding, ""
         self.ctx.gripper.mark_released(self.ctx.now)
         self.ctx.mission.delivery.released = True
         return Status.SUCCESS

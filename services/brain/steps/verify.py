@@ -136,9 +136,8 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     seen = ctx.known_object(label)
     # A vessel that lay may have been stood on its mouth, and then looks like a can.
     alike = any(kind_of(k).ends_alike for k in (seen.kind, *seen.kinds[:1])) if seen else False
-    shape, before = seen.shape if seen else "", mission.failure
-    doubted = before is not None and (before.stage, before.code) == ("RELEASING", "TOPPLED")
-    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, shape, doubted)
+    shape, unlike = seen.shape if seen else "", mission.delivery.unlike == label
+    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, shape, unlike)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
@@ -151,6 +150,7 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
         mission.delivery.checked = [*mission.delivery.checked, finding.evidence]
         return Status.SUCCESS
     mission.delivery.released = False
+    mission.delivery.unlike = label if finding.unlike else mission.delivery.unlike
     taken = next((found.position for found in mission.search.found.values() if found.label == label), None)
     if finding.fault == "NOT_SEEN" and taken is not None:
         mission.delivery.absent[label] = taken, ctx.gripper.put_down.get(label, ctx.now)

@@ -33,11 +33,15 @@ between them, with room for the fingers."""
 
 @dataclass(frozen=True)
 class Finding:
-    """`fault` is "" when all is well; `words`: a clause for people; `measured`: the pose, "" when it was not seen."""
+    """`fault` is "" when all is well; `words`: a clause for people; `measured`: the pose, "" when it was not seen.
+
+    `unlike`: it has a shape that it has not where it stands.
+    """
 
     fault: Fault
     words: str
     measured: str = ""
+    unlike: bool = False
 
     @property
     def evidence(self) -> str:
@@ -81,13 +85,14 @@ def judge_placement(
     rest: Rest = Rest(),  # noqa: B008 it is frozen
     alike: bool = False,
     shape: ShapeFamily = "",
-    doubted: bool = False,
+    unlike: bool = False,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs. `rest`: how it rested before; `alike`:
     by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head. `shape`: how it is
-    measured now, "" if it was not; `doubted`: a look before has shown that it does not stand.
+    measured now, "" if it was not; `unlike`: a look before, since it was put down, showed a shape that it has not
+    where it stands; that the next one shows another does not tell which of them is right.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
     seen = spec.kind if spec else kind_meant(label, household)
@@ -116,9 +121,10 @@ def judge_placement(
         return Finding("UNCHECKED", words, measured)
     unknown = not rest.asked and spec is None and not stands
     lower = unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood)
-    other = (unknown or stands) and rest.stood and rest.shape in TURNED and _turned_no_more(shape, pose, doubted)
+    turned = (unknown or stands) and rest.stood and rest.shape in TURNED
+    other = bool(turned and (unlike or _turned_no_more(shape, pose)))
     if spec is None and (lower or other) and not in_bin:
-        return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
+        return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured, other)
     if beside is not None:
         apart = math.dist((x, y), beside.position[:2])
         if apart > BESIDE:
@@ -127,12 +133,9 @@ def judge_placement(
     return Finding("", f"the {label} is {where}", measured)
 
 
-def _turned_no_more(shape: ShapeFamily, pose: ObjectPose, doubted: bool) -> bool:
-    """Nobody would measure so what is turned and stands: a flower pot as wide as high that lies shows no axis. Once in
-    doubt only a turned shape tells that it stands."""
+def _turned_no_more(shape: ShapeFamily, pose: ObjectPose) -> bool:
+    """Nobody would measure so what is turned and stands: a flower pot as wide as high that lies shows no axis."""
     length, width = max(pose.size[:2]), min(pose.size[:2])
-    if doubted:
-        return bool(shape) and shape not in TURNED
     return shape == "irregular" or (shape == "box" and length > OBLONG * width)
 
 
