@@ -80,10 +80,10 @@ def test_a_ray_held_up_by_the_robot_itself_marks_and_clears_nothing() -> None:
     made = Costmap(told(MINIMAL), 0.05, 30.0)
     seen = np.full(360, 11.0)
     seen[ray(-90)] = 0.8
-    made.see((0.0, 0.0, 0.0), ANGLES, seen, 10.0, 1.0)
+    made.obstacles.see((0.0, 0.0, 0.0), ANGLES, seen, 10.0, 1.0)
     spot = made.cell(0.0, -0.8)
     assert made.distance[spot] == 0.0
-    made.see((0.0, 0.0, 0.0), ANGLES, np.zeros(360), 10.0, 1.5)
+    made.obstacles.see((0.0, 0.0, 0.0), ANGLES, np.zeros(360), 10.0, 1.5)
     assert made.distance[spot] == 0.0 and made.distance[made.cell(0.0, 0.0)] > 0.4
-    made.see((0.0, 0.0, 0.0), ANGLES, np.full(360, 11.0), 10.0, 2.0)
+    made.obstacles.see((0.0, 0.0, 0.0), ANGLES, np.full(360, 11.0), 10.0, 2.0)
     assert made.distance[spot] > 0.5
