@@ -88,8 +88,10 @@ _NOT_THAT_ONE = re.compile(
 _SEVERAL = re.compile(r"\b(?:all|every|everything|any|do|does|did|(?:the|my|those|these) (?:\w+ )?\w+s)\b")
 _SPARABLE = re.compile(rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}")
 _WHERE_IT_IS = re.compile(
-    r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
-    r"(?: lying| standing| still| somewhere)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
+    r"^(?P<said>(?P<asked>\w+ (?:me )?|(?:i|we) (?:need|want) )(?P<thing>(?:the|my|a|an|that) [^,]+?))"
+    r"(?P<here> (?:over |back )?here| to me| to us)?,? "
+    r"(?:it|they|he|she) (?:is|are|(?:should|must|might|could) be|lies|stands|lives|sits|hangs)"
+    r"(?: lying| standing| still| somewhere| probably| usually)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
 )
 """Something to be brought, and where it is."""
 _THE_OTHER_ONE = re.compile(
@@ -122,8 +124,10 @@ def settled(text: str, is_place: IsPlace) -> str:
         text = f"{found['said']}{one_of}"
     text = _without_spared(_SPARED_FIRST.sub(r"\g<said> but \g<spared>", text))
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
-    if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
-        text = f"{found['said']} {found['where']}"
+    if found and not PREPOSITIONS & set(found["thing"].split()):
+        wished = found["asked"].startswith(("i ", "we ")) or found["here"]
+        if wished or verb_first(bare):
+            text = f"{'bring me ' if wished else found['asked']}{found['thing']} {found['where']}"
     if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
         text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
     if (found := _WILL_DO.match(text)) and verb_first(without_politeness(found["said"])):

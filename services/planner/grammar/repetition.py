@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from common.language.contractions import expand
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import HANDLING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise, without_determiners
 from common.language.politeness import without_politeness
@@ -71,6 +71,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         return other
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
+        if found["thing"] and thing.split()[0] in COMMANDING:
+            return thing
         if found["other"] and last.split()[0] in HANDLING and _PLACED.search(thing):
             return f"{last.split()[0]} {thing}"
         if thing.split()[0] in DETERMINERS | _QUANTITIES:

@@ -10,6 +10,8 @@ OBJECT = frozenset({"thing", "object", "item"})
 POSITIONS = frozenset({"top", "bottom", "upper", "lower", "front", "rear", "outer", "inner"})
 """Where something is rather than how it looks."""
 WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
+TOYS = frozenset({"toy", "model", "play"})
+"""Words before a noun that make of anything what can be carried."""
 MASSES = frozenset({"stuff", "mess"})
 SHORTEST_NAME = 3
 """Letters of the longest word of a name (chosen: shorter is a word misheard)."""

@@ -23,6 +23,7 @@ from services.planner.grammar.senses import (
     OBJECT,
     POSITIONS,
     SHORTEST_NAME,
+    TOYS,
     WHOLE,
     Sense,
     Spot,
@@ -299,6 +300,8 @@ def _coloured(r: Receptacle, colour: str, rest: str) -> bool:
 
 def is_abstract(words: Words) -> bool:
     """Is the head of a noun phrase nothing that could be carried?"""
+    if TOYS.intersection(words[:-1]):
+        return False  # the toy bus
     head = words[words.index("of") - 1] if "of" in words[1:] else words[-1]
     return any(form in ABSTRACT for form, _ in _singulars(head))
 

@@ -1,6 +1,7 @@
 """The place that words mean. Pure."""
 
-from common.language.normalise import Words, enumeration, without_determiners
+from common.language.normalise import Words, enumeration, normalise, without_determiners
+from services.planner.grammar.chunks import named
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
@@ -13,8 +14,8 @@ def spot(builder: PlanBuilder, words: Words) -> Spot:
     Raises:
         Refusal: no such place, or several.
     """
-    if " ".join(words) in ("there", "it", "that") and builder.spot is not None:
-        return builder.spot
+    if " ".join(words) in ("there", "it", "that") and (meant := builder.spot or _of_last(builder)) is not None:
+        return meant
     nearest = words[-2:-1] if words[:1] == ("the",) and len(words) == 3 else ()
     wanted = words[2:] if nearest and nearest[0] in ("nearest", "closest") else words
     found = builder.vocabulary.spot(wanted)
@@ -29,6 +30,15 @@ def spot(builder: PlanBuilder, words: Words) -> Spot:
     if len(found) > 1:
         raise Lost(f"I do not know which one you mean: {enumeration([f'the {s.name}' for s in found], 'or')}")
     return found[0]
+
+
+def _of_last(builder: PlanBuilder) -> Spot | None:
+    """Where something was put just now; None where the last command named no place, or was not carried out."""
+    last = builder.world.history.last
+    if last is None or last.outcome != "delivered":
+        return None
+    spots = named(tuple(normalise(last.command).split()), builder.vocabulary)[1]
+    return builder.vocabulary.spot(tuple(spots[-1].split()))[0] if spots else None
 
 
 def anchor_spots(builder: PlanBuilder, phrase: Phrase) -> list[Spot]:
