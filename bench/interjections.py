@@ -14,7 +14,7 @@ from typing import NamedTuple
 from bench import log_linear
 from common.language.log_linear import LogLinear
 from services.brain.language import at_work
-from services.brain.language.interjection import by_wording, least
+from services.brain.language.interjection import by_wording
 from tests.everyday import all_lists
 
 _SENSE = {"answer": "aside", "refuse": "aside", "none": "idle", "return": "replace", "pause": "stop"}
@@ -41,7 +41,7 @@ def sentences() -> list[Said]:
             acts = re.findall(r"(?:^|\|\|) *(\w+)", row.right)
             right = frozenset(_SENSE.get(act, act) for act in acts)
             if tag == "busy" and right <= set(at_work.SENSES):
-                kind = by_wording(row.said, doing).kind
+                kind = by_wording(row.said, doing)[0].kind
                 found.append(Said(number, at_work.interrupting(row.said, doing, kind), doing, right))
     return found
 
@@ -68,7 +68,7 @@ def _apart(rows: Sequence[Said], lists: Sequence[str]) -> None:
     for row in unseen:
         plain = _OF_KIND.get(row.heard.kind, row.heard.kind)
         p = model.probabilities(at_work.options(row.heard, model.words), at_work.embedding(row.heard, row.doing))
-        sense = at_work.SENSES[int(p.argmax())] if p.max() >= least(row.heard.said, row.doing) else plain
+        sense = at_work.SENSES[int(p.argmax())] if p.max() >= by_wording(row.heard.said, row.doing)[1] else plain
         wordings += plain in row.right
         both += sense in row.right
     print(f"{' '.join(lists):30} {len(unseen):5} sentences, by wordings {wordings:4}, with the model {both:4}")

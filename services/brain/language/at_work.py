@@ -9,11 +9,9 @@ from importlib.resources import files
 from itertools import pairwise
 from typing import Literal, NamedTuple, get_args
 
-import numpy as np
-
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.embedding import embedded
+from common.language.embedding import beside_features
 from common.language.exchange import PREPOSITIONS
 from common.language.lexicon import COMMANDING
 from common.language.log_linear import UNKNOWN, Floats, LogLinear, Option, hashed
@@ -26,8 +24,6 @@ Sense = Literal["stop", "queue", "replace", "aside", "idle"]
 SENSES: tuple[Sense, ...] = get_args(Sense)
 WEIGHTS = "at_work.npz"
 """Beside this module: what `LogLinear.save` wrote."""
-SCALE = 3.0
-"""Length of an embedding beside features of 1 (as of the planner's model)."""
 _STEM = 4
 """First letters that the forms of a word share (as of the planner's model)."""
 _THIRDS, _LONG, _SHARED = 3, 5, 3
@@ -59,7 +55,7 @@ def options(heard: Interrupting, known: frozenset[str]) -> list[Option]:
 def embedding(heard: Interrupting, doing: str) -> Floats:
     """Of what was said alone, and after the command under way: (2 * embedding.SIZE,)."""
     said = normalise(heard.said)
-    return np.concatenate([embedded(said), embedded(f"i am about to: {doing}. {said}")]) * np.float32(SCALE)
+    return beside_features(said, f"i am about to: {doing}. {said}")
 
 
 def likeliest(said: str, doing: str, kind: str) -> tuple[Sense, float]:

@@ -113,29 +113,27 @@ def interjection(said: str, doing: str = "") -> Interjection:
 
     `doing`: the command under way, which a sentence that forbids something of it calls off.
     """
-    found = by_wording(said, doing)
+    found, least = by_wording(said, doing)
     decided = found.kind == "encouragement" or _FORBIDDEN.match(_words(said))
     if decided or asks_for(said, "stop", "cancel", "come_back"):
         return found
     sense, p = likeliest(said, doing, found.kind)
-    if p < least(said, doing) or found.kind in (sense, _SAME.get(sense)):
+    if p < least or found.kind in (sense, _SAME.get(sense)):
         return found
     return Interjection("cancel" if sense == "stop" else sense, said)
 
 
-def least(said: str, doing: str) -> float:
-    """How likely another sense than that of the wording has to be, to count."""
-    return FIRM if _worded(said, _words(said), doing) else SURE
+def by_wording(said: str, doing: str = "") -> tuple[Interjection, float]:
+    """The same by the wordings alone, and how likely another sense has to be, to count.
 
-
-def by_wording(said: str, doing: str = "") -> Interjection:
-    """The same by the wordings alone; a command without a word about when is for later."""
+    A command without a word about when is for later.
+    """
     words = _words(said)
     if (found := _worded(said, words, doing)) is not None:
-        return found
+        return found, FIRM
     if is_question(said):
-        return Interjection("aside", said)
-    return Interjection("queue" if without_politeness(words) else "encouragement", said)
+        return Interjection("aside", said), SURE
+    return Interjection("queue" if without_politeness(words) else "encouragement", said), SURE
 
 
 def _words(said: str) -> str:

@@ -9,9 +9,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import NamedTuple
 
-import numpy as np
-
-from common.language.embedding import embedded
+from common.language.embedding import beside_features
 from common.language.log_linear import Floats, LogLinear, Option
 from common.language.normalise import Words
 from services.planner.grammar.chunks import POINTING, Chunk, chunks
@@ -21,8 +19,6 @@ from services.planner.semantic.forms import MARK, Candidate, candidates
 
 WEIGHTS = "weights.npz"
 """Beside this module: what `LogLinear.save` wrote."""
-SCALE = 3.0
-"""Length of an embedding beside features of 1 (chosen on lists left out: 2 to 6 differ by a sentence in a hundred)."""
 _STANDS_FOR = {"thing": "the thing", "spot": "the table"}
 """What a thing or place is called in the sentence without names."""
 
@@ -53,8 +49,7 @@ def embedding(words: Words, found: Sequence[Chunk]) -> Floats:
         else:
             bare.append("it" if chunk.text in POINTING else _STANDS_FOR[chunk.kind])
             at = chunk.end
-    texts = (" ".join(bare), " ".join(word for word in words if word != MARK))
-    return np.concatenate([embedded(text) for text in texts]) * np.float32(SCALE)
+    return beside_features(" ".join(bare), " ".join(word for word in words if word != MARK))
 
 
 class Ranker:
