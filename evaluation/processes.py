@@ -140,19 +140,14 @@ def _plan(case: Case, directory: Path) -> Plan:
     plan = Plan(own_robot("eval", seed=case.seed, settings=case.settings, **given))
     faulty = targets(case)
     needed = {"router", "sim", *paced_services()} - {*idle_services(case)}
-    plan.services = [
+    services = [
         Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s
         for s in SERVICES
         if s.name in needed
     ]
+    plan.pace(services, Examiner.NAME)
     clean = {k: v for k, v in plan.environ.items() if k in _plan_keys(plan) or not k.startswith(config.PREFIX)}
-    waited = [f'"{s.name}"' for s in plan.services if s.paced] + [f'"{Examiner.NAME}"']
-    plan.environ = {
-        **clean,
-        CASE: str(file),
-        "TIDYBOT_STATE_DIR": str(directory),
-        "TIDYBOT__SIM__WAIT_FOR": f"[{', '.join(waited)}]",
-    }
+    plan.environ = {**clean, CASE: str(file), "TIDYBOT_STATE_DIR": str(directory)}
     return plan
 
 

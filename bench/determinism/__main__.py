@@ -72,10 +72,9 @@ def in_processes(args: argparse.Namespace) -> Trace:
         harm = rules(args)
         harmed = {rule.service for rule in harm}
         services = [msgspec.structs.replace(s, module=NODE) if s.name in harmed else s for s in plan.services]
-        plan.services = [*services, Service("witness", "bench.determinism.witness")]
+        plan.pace([*services, Service("witness", "bench.determinism.witness")])
         case = directory / "case.json"
         case.write_bytes(msgspec.json.encode(case_of(args, harm)))
-        waited = ", ".join(f'"{s.name}"' for s in plan.services if s.paced)
         own = {f"TIDYBOT__{k.upper().replace('.', '__')}": v for k, _, v in (s.partition("=") for s in settings(args))}
         plan.environ = {
             **plan.environ,
@@ -83,7 +82,6 @@ def in_processes(args: argparse.Namespace) -> Trace:
             "TIDYBOT__WITNESS__TRACE": str(trace),
             "TIDYBOT_STATE_DIR": str(directory / "state"),
             CASE: str(case),
-            "TIDYBOT__SIM__WAIT_FOR": f"[{waited}]",
         }
         try:
             bring_up(supervision, plan, lambda text: None)

@@ -24,6 +24,7 @@ from common.time.clock import unix_time
 
 PIPELINES = ("fetch", "vla")
 """The values of `brain.pipeline`: the eight-state system flow, or voice, plan, vision and action."""
+WAIT_FOR = f"{config.PREFIX}SIM__WAIT_FOR"
 SENSORS = ("bought", "ideal")
 """With the noise and the gaps of sensors that can be bought, or without."""
 
@@ -56,11 +57,26 @@ class Plan:
             settings["TIDYBOT__SIM__VIEWER"] = "true"
         settings["TIDYBOT__SIM__SPEED"] = self.speed
         if self.speed != "realtime":
-            paced = [f'"{s.name}"' for s in self.services if s.paced]
             settings["TIDYBOT__RUNTIME__LOCKSTEP"] = "true"
-            settings["TIDYBOT__SIM__WAIT_FOR"] = f"[{', '.join(paced)}]"
-        settings |= _overrides(args.set)
         self.environ = {**os.environ, **settings}
+        if self.speed != "realtime":
+            self.pace(self.services)
+        self.environ |= _overrides(args.set)
+
+    def pace(self, services: Sequence[Service], *guests: str) -> None:
+        """Start these services; in lockstep time begins with all that are paced and with `guests`, which come later."""
+        self.services = list(services)
+        awaited = [*(s.name for s in services if s.paced), *guests]
+        self.environ[WAIT_FOR] = msgspec.json.encode(awaited).decode()
+
+    @property
+    def guests(self) -> set[str]:
+        """Participants that time begins with and that this plan does not start."""
+        try:
+            awaited = set(msgspec.json.decode(self.environ.get(WAIT_FOR, "[]"), type=list[str]))
+        except msgspec.DecodeError:
+            return set()  # the simulation says what is wrong with it
+        return awaited - {*self.names}
 
     @property
     def names(self) -> list[str]:

@@ -103,12 +103,17 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
                 say(f"  {name:12}  {monotonic() - began:4.1f} s")
             _check(supervision, ", ".join(sorted(waiting)), began)
             sleep(0.03)
-        if {*NAMES} - {*plan.names} <= EXTRA:
+        if comes_to_life(plan):
             _until(lambda: _awake(link), supervision, "the brain's first joint states", began, pause=0.05)
         page = link.latest(topics.PAGE_STATUS) if "dashboard" in plan.names else None
         if page is not None:
             say(f"  page                  {page.url}")
     return monotonic() - began
+
+
+def comes_to_life(plan: Plan) -> bool:
+    """True when time passes for the brain, and it takes commands, with nobody but those that the plan starts."""
+    return not plan.guests and {*NAMES} - {*plan.names} <= EXTRA
 
 
 def _awake(link: Link) -> bool:

@@ -186,11 +186,11 @@ class Process:
         speakers = [ClockPublisher(p.session) for p in self._presences]
         acks = [AckCollector(p.session, p.io.drops) for p in self._presences]
         barriers = [Barrier(a.next, wait_for, report=lambda text: io.log.warning(text)) for a in acks]
+        tick = round(getattr(self.service, "start_time", 0.0) / DT)
         if lockstep:
             io.log.info("waiting for participants", names=",".join(wait_for))
             for barrier in barriers:
-                barrier.assemble(self._keep_alive)
-        tick = round(getattr(self.service, "start_time", 0.0) / DT)
+                barrier.assemble(self._keep_alive, going_on=tick > 0)
         pacer = Pacer(DT, speed) if speed else None
         published: m.SimClockTick | None = None
         while not self._stop.is_set():

@@ -59,14 +59,20 @@ class Barrier:
         self.periods: dict[str, int] = {}
         self._acked: dict[str, int] = {}
 
-    def assemble(self, alive: Callable[[], bool] = lambda: True) -> None:
-        """Wait until every expected participant has joined, or the limit has passed, which is reported."""
+    def assemble(self, alive: Callable[[], bool] = lambda: True, going_on: bool = False) -> None:
+        """Wait until every expected participant has joined; who has not within the limit is reported.
+
+        A busy machine may take longer to start one than any limit, and a world without it would be another one. Only
+        one that is `going_on` does so without those that it lost: they may have been ended for good.
+        """
         end = monotonic() + self._limit
-        while (missing := self._expected - self.periods.keys()) and alive():
-            if monotonic() > end:
-                self._report(f"lockstep starts without {', '.join(sorted(missing))}")
-                break
-            self._take(0.05)
+        while (missing := ", ".join(sorted(self._expected - self.periods.keys()))) and alive():
+            if not self._take(0.05) and monotonic() > end:
+                if going_on:
+                    self._report(f"lockstep goes on without {missing}")
+                    break
+                self._report(f"lockstep waits for {missing}")
+                end = monotonic() + self._limit
 
     def wait(self, tick: int, gone: Callable[[str], bool], again: Callable[[], None]) -> None:
         """Return when everyone due at `tick` has acknowledged it or left.

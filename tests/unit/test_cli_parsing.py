@@ -15,6 +15,7 @@ from cli.errors import CliError, checked
 from cli.processes import plan as plans
 from cli.processes import ports, programs, supervision
 from cli.processes.services import NAMES, OPTIONAL, SERVICES
+from cli.processes.up import comes_to_life
 from tests.support import ROOT
 
 
@@ -81,6 +82,16 @@ def test_another_speed_than_realtime_means_lockstep_with_every_paced_service() -
     assert json.loads(fast["TIDYBOT__SIM__WAIT_FOR"]) == expected
     assert "brain" in expected and "sim" not in expected and "dashboard" not in expected
     assert "TIDYBOT__RUNTIME__LOCKSTEP" not in plan().environ
+
+
+def test_who_is_waited_for_in_lockstep_and_comes_later_is_not_waited_for_by_up() -> None:
+    fast = plan("--speed", "max")
+    assert comes_to_life(fast) and comes_to_life(plan())
+    fast.pace(fast.services, "examiner")
+    assert json.loads(fast.environ["TIDYBOT__SIM__WAIT_FOR"])[-1] == "examiner"
+    assert not comes_to_life(fast)
+    assert not comes_to_life(plan("--speed", "max", "--set", 'sim.wait_for=["brain", "mine"]'))
+    assert not comes_to_life(plan("--without", "planner"))
 
 
 def test_options_become_the_environment_of_the_services() -> None:

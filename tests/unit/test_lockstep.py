@@ -101,10 +101,22 @@ def test_a_dead_participant_leaves_at_once_and_a_hung_one_after_the_limit() -> N
     ]
 
 
-def test_a_participant_that_never_joins_is_reported() -> None:
+def test_a_world_that_goes_on_does_so_without_those_that_never_join() -> None:
     gate, reports = barrier([("a", -1, 1)], ("a", "ghost"))
+    gate.assemble(going_on=True)
+    assert reports == ["lockstep goes on without ghost"]
+
+
+def test_a_new_world_waits_for_a_participant_that_takes_longer_than_the_limit() -> None:
+    reports: list[str] = []
+
+    def next_ack(timeout: float) -> tuple[str, int, int] | None:
+        return ("slow", -1, 5) if len(reports) == 2 else None
+
+    gate = Barrier(next_ack, ("slow",), 0.0, reports.append)
     gate.assemble()
-    assert reports == ["lockstep starts without ghost"]
+    assert gate.periods == {"slow": 5}
+    assert reports == ["lockstep waits for slow"] * 2
 
 
 def test_a_process_that_was_started_again_takes_part_again() -> None:
