@@ -11,8 +11,7 @@ from common.bus.port import Io
 from common.config import Config
 from evaluation.case import Case, Line, Observed
 from evaluation.faults.reports import FaultReport
-from evaluation.person.dialogue import Dialogue
-from evaluation.person.onlooker import Onlooker
+from evaluation.person.dialogue import Dialogue, Onlooker
 from evaluation.shortest import FloorPlan
 from evaluation.watch import observe
 from judge.evidence import Sample

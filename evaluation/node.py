@@ -11,7 +11,7 @@ import msgspec
 
 from common.runtime import main
 from evaluation.case import Case
-from evaluation.faults.injection import with_faults
+from evaluation.faults.physical.faults import with_faults
 from evaluation.faults.reports import FaultReportFile
 from evaluation.registry import service_class
 

@@ -28,7 +28,7 @@ from common.scene import load_scene
 from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
-from evaluation.faults.injection import targets
+from evaluation.faults.physical.faults import targets
 from evaluation.faults.processes import ProcessFaultInjector, unavailable
 from evaluation.faults.reports import FaultReportFile
 from evaluation.node import CASE, FAULT_REPORTS

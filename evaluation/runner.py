@@ -1,6 +1,7 @@
 """One case in this process: the real services, the examiner among them, in lockstep as fast as the CPU allows."""
 
 import json
+import shutil
 import tempfile
 import traceback
 from collections.abc import Callable, Iterator
@@ -8,20 +9,26 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from common import messages as m
 from common import topics
+from common.bus import codec
 from common.config import ConfigError
 from common.time.clock import monotonic
 from common.time.lockstep import DT
-from evaluation.case import Case, Observed, Result, TimedFault
+from evaluation.case import Case, Observed, Result, Showing, TimedFault
 from evaluation.examiner import Examiner, examiner_of
-from evaluation.faults.injection import targets, with_faults
+from evaluation.faults.physical.faults import targets, with_faults
 from evaluation.faults.reports import FaultReport, Reporter, ignore
 from evaluation.homes.new import NotMapped, mapped_first
 from evaluation.report.picture import last_picture
 from evaluation.stack import Stack
-from evaluation.suites.showing import show
 from evaluation.verdict import judge
 
+NAMES = "taught-names.json"
+"""What perception keeps in its directory of state."""
+PATIENCE = 60.0
+"""Robot time [s] within which it is to have learned a name."""
+SETTINGS = ("brain.pipeline=vla", "brain.enable_confirmation=false")
 Progress = Callable[[float, str], None]
 REPORT = 2.0
 """Robot time [s] between two signs of life of a worker."""
@@ -174,3 +181,43 @@ def timeline(query: Callable[[bytes], bytes | None]) -> list[str]:
             words = (f"{entry['t']:.2f} s", entry["state"], entry["cause"], entry["evidence"])
             rows.append("  ".join(str(w) for w in words if w))
     return rows
+
+
+# --- what a person shows the robot before a case begins: a world of its own, in which a thing gets its name
+def show(showing: Showing, folder: Path) -> str:
+    """Run the showing; the names that the robot keeps of it go to `folder`. Why it has learned nothing, or ""."""
+    with tempfile.TemporaryDirectory(prefix="showing-") as kept:
+        stack = Stack(
+            showing.scene, showing.seed, SETTINGS, household=showing.household, without=("dashboard", "speech"),
+            state_dir=Path(kept),
+        )  # fmt: skip
+        try:
+            why = _teach(stack, showing)
+        finally:
+            stack.close()
+        if not why:
+            shutil.copy(Path(kept) / NAMES, folder / NAMES)
+    return why
+
+
+def _teach(stack: Stack, showing: Showing) -> str:
+    while stack.state().state != "WAITING":
+        if stack.now > PATIENCE:
+            return "the robot does not get ready"
+        stack.tick()
+    end = stack.now + PATIENCE
+    if showing.at is not None:
+        request = m.TeachRequest(name=showing.name, id="click", position=showing.at)
+        stack.bus.send(topics.TEACH, request)
+    else:
+        stack.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text=showing.sentence, id="shown", confirmed=True))
+    while stack.now < end:
+        stack.tick()
+        last = stack.bus.last.get(topics.TAUGHT.key)
+        if last is not None:
+            result = codec.decode(topics.TAUGHT, last)
+            return "" if result.ok else f"{result.code}: {result.detail}"
+        ended = stack.state().last
+        if ended is not None and ended.outcome != "delivered":
+            return ended.reason
+    return "it says nothing of the name"

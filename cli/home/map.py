@@ -4,13 +4,13 @@ import argparse
 import math
 from pathlib import Path
 
+import msgspec
 import numpy as np
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
 from cli.errors import CliError, port_number
-from cli.home.map_plan import plan_to_map
 from cli.link import Link, Watch
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import free_port, port_is_free
@@ -20,11 +20,31 @@ from common import messages as m
 from common import topics
 from common.bus.session import open_session
 from common.cells import unpacked
-from common.files.map_file import HOUSEHOLD, OCCUPIED, PICTURE, UNKNOWN, picture
-from common.household import Household, load_household
+from common.config import config_dir
+from common.files.map_file import (
+    FREE,
+    HOUSEHOLD,
+    MAP,
+    OCCUPIED,
+    PICTURE,
+    SURFACES,
+    UNKNOWN,
+    GridMap,
+    MapError,
+    named_picture,
+    picture,
+    surface_rows,
+    write_map,
+)
+from common.files.plan_file import to_toml
+from common.floor_plan import FloorPlan
+from common.household import Household, load_household, load_words, mapped
 from common.household_edits import edited
+from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
 
+RESOLUTION = 0.05
+"""Of the map's cells [m]: map_server's usual one."""
 NAMES = ("router", "sim", "camera", "navigation", "mapping", "dashboard")
 EXAMPLES = """examples:
   tidybot map --out home                         map the shipped flat
@@ -181,3 +201,37 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--port", type=port_number, default=0, help="default: 7447, or a free one if in use")
     parser.add_argument("--timeout", type=float, default=7200.0, metavar="S", help="wall time (default %(default)s)")
     parser.set_defaults(run=run)
+
+
+# --- the files of a map out of a floor plan, for homes that somebody has measured
+def plan_to_map(world: str, out: Path) -> Household:
+    """Write map, surfaces and household of a world's or a household's floor plan to `out`; the household.
+
+    Raises:
+        CliError: a plan that cannot be used, or a directory that cannot be written to.
+    """
+    try:
+        household = mapped(load_scene(world), load_words(config_dir()))
+        out.mkdir(parents=True, exist_ok=True)
+        grid = GridMap(drawn(household), RESOLUTION, household.low)
+        write_map(out, grid, MAP)
+        (out / SURFACES).write_bytes(msgspec.json.format(msgspec.json.encode(surface_rows(household)), indent=1))
+        (out / HOUSEHOLD).write_text(to_toml(household), encoding="utf-8")
+        named_picture(grid, household).save(out / PICTURE)
+    except (SceneError, MapError) as error:
+        raise CliError(str(error)) from None
+    except OSError as error:
+        raise CliError(f"{error.filename or out}: {error.strerror}") from None
+    return household
+
+
+def drawn(plan: FloorPlan) -> "np.ndarray[tuple[int, ...], np.dtype[np.uint8]]":
+    """FREE or OCCUPIED for each cell (rows, columns) of the plan, row 0 in the south."""
+    rows, columns = (round((plan.high[k] - plan.low[k]) / RESOLUTION) for k in (1, 0))
+    xs = plan.low[0] + (np.arange(columns) + 0.5) * RESOLUTION
+    ys = plan.low[1] + (np.arange(rows) + 0.5) * RESOLUTION
+    gx, gy = np.meshgrid(xs, ys)
+    taken = np.zeros((rows, columns), bool)
+    for box in [wall.footprint for wall in plan.walls] + plan.footprints:
+        taken |= box.signed_distances(gx, gy) <= 0.0
+    return np.where(taken, OCCUPIED, FREE).astype(np.uint8)

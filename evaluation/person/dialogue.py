@@ -1,15 +1,34 @@
 """The person's side of the conversation with the robot: sentences typed or by voice, and answers to questions."""
 
+import math
+import re
 from collections import deque
+from collections.abc import Mapping
+from typing import Literal
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
+from common.floor_plan import Vec3
+from common.scene import Scene
 from evaluation.case import Case
 from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.simulated_user import Manner, SimulatedUser
 from evaluation.person.voice import RATE, Samples, loudness, utter
+from judge.evidence import Sample
+from judge.words import plain
 
+SHOWN, NEAREST = 0.10, 0.05
+"""Distance [m] of an object from the place that the robot shows, up to which it is what is seen there, and by how much
+any other has to be farther. Chosen: the size of an object, and half of one; between two neighbours one sees neither."""
+Manner = Literal["correct", "reject", "silent", "agree"]
+PATIENCE = 6
+"""Answers that the user gives to one command; chosen: more than the robot may ask."""
+CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
+"""Who was not understood says it in other words."""
+_HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
+_AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
+_IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
+_WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
 REACTION = 0.5
 """Time [s] until the simulated user answers."""
 WAKE = "hey jarvis, "
@@ -85,3 +104,94 @@ class Dialogue:
         chunk = m.AudioChunk(t=now, data=part.astype("<i2").tobytes(), rate=RATE, end=not self._sound)
         self._io.publish(topics.AUDIO_PCM, chunk)
         self.last = now
+
+
+# --- a person with a wish: says it, listens to what the robot says, and answers its questions
+class SimulatedUser:
+    """Wants `command` done with `thing`, by the world's name; `called` are the person's words for it, if others.
+
+    Manners: `correct` a wrong question ("no, the <words>"), `reject` it with "no" and repeat when asked, keep `silent`,
+    or `agree` to anything.
+    """
+
+    def __init__(self, command: str, thing: str, scene: Scene, manner: Manner = "correct", called: str = "") -> None:
+        self._command, self._thing, self._scene, self._manner = command, thing, scene, manner
+        self._words = called or thing
+        self.answers = 0
+
+    def set_goal(self, command: str, thing: str = "") -> None:
+        """Note what was said, and meant, from now on; without a `thing` the one that was wanted before."""
+        self._command, self.answers = command, 0
+        if thing:
+            self._thing = self._words = thing
+
+    def answer(self, sentence: str, about: str = "") -> str:
+        """What to say to a sentence of the robot's; "" for nothing. `about`: the object that it shows while it asks."""
+        if self._manner == "silent" or self.answers >= PATIENCE:
+            return ""
+        reply = self._reply(sentence.strip(), about)
+        self.answers += bool(reply)
+        return reply
+
+    def _reply(self, sentence: str, about: str) -> str:
+        if heard := _HEARD.match(sentence):
+            if self._manner == "agree" or self._same(heard[1]):
+                return "yes"
+            if self._manner == "correct" and self._only_the_thing_differs(heard[1]):
+                return CORRECTIONS[self.answers % len(CORRECTIONS)].format(self._words)
+            return "no"
+        if _AGAIN.search(sentence):
+            return self._command
+        if _IDENTITY.search(sentence) and self._thing:
+            return "yes" if self._manner == "agree" or about == self._thing else "no"
+        if _WHICH.match(sentence) and self._thing:
+            return f"the {self._words}"
+        return ""
+
+    def _same(self, heard: str) -> bool:
+        return self._canonical(heard) == self._canonical(self._command)
+
+    def _canonical(self, text: str) -> str:
+        """A sentence with aliases of objects replaced by their names."""
+        words = plain(text)
+        for spec in self._scene.objects:
+            for alias in sorted(spec.aliases, key=len, reverse=True):
+                if " " in alias:
+                    words = re.sub(rf"\b{re.escape(plain(alias))}\b", plain(spec.name), words)
+        return words
+
+    def _only_the_thing_differs(self, heard: str) -> bool:
+        """The robot understood what to do, but with another object."""
+        if not self._thing:
+            return False
+        pattern = re.escape(self._canonical(self._command)).replace(re.escape(plain(self._words)), "(.+)", 1)
+        found = re.fullmatch(pattern, self._canonical(heard))
+        names = {plain(n) for o in self._scene.objects for n in (o.name, *o.aliases)}
+        return found is not None and bool(found.groups()) and found[1] in names
+
+
+# --- what the person sees of the robot: the object that it shows, and how fast it drives
+def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:
+    """The object that a person sees at the place that the robot shows them; "" for none."""
+    if place is None:
+        return ""
+    apart = sorted((math.dist(at, place), name) for name, at in objects.items())
+    alone = len(apart) == 1 or (len(apart) > 1 and apart[1][0] > apart[0][0] + NEAREST)
+    return apart[0][1] if alone and apart[0][0] < SHOWN else ""
+
+
+class Onlooker:
+    """Looks at every sample of the world; `about` is the place [map] that the robot shows, `shown` what is seen there,
+    `speed` [m/s] its base's."""
+
+    def __init__(self) -> None:
+        self.about: Vec3 | None = None
+        self.shown, self.speed = "", 0.0
+        self._was = (0.0, (0.0, 0.0))
+
+    def see(self, t: float, sample: Sample) -> None:
+        """The world at robot time `t` [s]."""
+        self.shown = seen_at(self.about, {name: o.position for name, o in sample.things.items()})
+        (before, there), here = self._was, sample.base[:2]
+        self._was = t, here
+        self.speed = math.dist(there, here) / max(t - before, 0.01) if before else 0.0

@@ -15,8 +15,8 @@ from common.scene import load_scene
 from evaluation.case import Result
 from evaluation.report import html as html_report
 from evaluation.report import text as report
+from evaluation.report.html import by_stage, reached
 from evaluation.report.picture import HEIGHT, WIDTH, last_picture
-from evaluation.report.stages import by_stage, reached
 from services.sim.physics import Physics
 
 

@@ -10,9 +10,8 @@ from bench.grasp.hand import Bench
 from common import messages as m
 from common import topics
 from common.scene import Obstacle, load_scene
-from evaluation.faults.injection import targets, with_faults
 from evaluation.faults.physical.fault import PhysicalFault
-from evaluation.faults.physical.faults import with_physical_faults
+from evaluation.faults.physical.faults import targets, with_faults, with_physical_faults
 from evaluation.faults.physical.unfit import InTheWay
 from evaluation.faults.reports import FaultReport, FaultReportFile, ignore
 from evaluation.suites.table import AMOUNT, FAULTS, GRASPED, faults

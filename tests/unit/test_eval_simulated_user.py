@@ -3,8 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.person.onlooker import seen_at
-from evaluation.person.simulated_user import PATIENCE, Manner, SimulatedUser
+from evaluation.person.dialogue import PATIENCE, Manner, SimulatedUser, seen_at
 from judge.words import plain
 
 SCENE = load_scene("apartment")

@@ -13,8 +13,7 @@ from common.scene import load_scene
 from evaluation.shortest import FloorPlan
 from judge.evidence import Evidence, Sample
 from judge.goal import Goal
-from judge.observer import Observer
-from judge.replica import Replica
+from judge.observer import Observer, Replica
 from services.sim.truth import report
 from tests.simulation import Simulation
 

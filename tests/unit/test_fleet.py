@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from cli.fleet.choice import EMPTY, LOW, goals, rank, refusal, things
-from cli.fleet.dispatch import Dispatch
-from cli.fleet.distance import path_length
+from cli.fleet.dispatch import Dispatch, path_length
 from cli.fleet.robots import RobotNow, robot
 from common import messages as m
 

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from cli.errors import CliError
-from cli.home.map_plan import plan_to_map
+from cli.home.map import plan_to_map
 from common.files.map_file import FREE, OCCUPIED, UNKNOWN, GridMap, picture, write_map
 from common.household import load_household
 from tests.map_server import read_map

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from cli.recordings.files import PARTS, RecordingFiles
+from cli.recordings.record import PARTS, RecordingFiles
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -8,6 +8,8 @@ simulation's place whose every step they follow. No service can reach them: noth
 from typing import Any
 
 from common import topics
+from evaluation.case import Case
+from evaluation.faults.messages import faulty
 from evaluation.faults.physical.fault import Kind, PhysicalFault
 from evaluation.faults.physical.injector import Injector
 from evaluation.faults.physical.jam import Jam
@@ -54,3 +56,15 @@ def with_physical_faults(kind: Any, faults: tuple[PhysicalFault, ...], report: R
 
     WithFaults.__name__ = WithFaults.__qualname__ = f"WithFaults{kind.__name__}"
     return WithFaults
+
+
+# --- everything a case injects into a service: faulty messages, and for the simulation faults of physics
+def targets(case: Case) -> set[str]:
+    """The services whose class the case replaces."""
+    return {r.service for r in case.rules} | ({"sim"} if case.physical else set())
+
+
+def with_faults(kind: Any, case: Case, report: Reporter) -> Any:
+    """The class that runs in place of a service's; the class itself where the case has nothing for it."""
+    found = faulty(kind, case.rules, report)
+    return with_physical_faults(found, case.physical, report) if kind.NAME == "sim" else found
