@@ -13,6 +13,7 @@ import numpy as np
 
 from bench.grasp import unlisted
 from bench.grasp.hand import Bench
+from bench.grasp.tools import TOOLS
 from common.kinds import KINDS
 from common.scene import ObjectSpec, Scene, load_scene
 from evaluation.report.statistics import percent
@@ -47,7 +48,7 @@ def main() -> None:
     def drawn(shape: str, config: ManipulationConfig) -> Callable[[int], str]:
         return lambda seed: unlisted.trial(scene, shape, seed, config)
 
-    names = list(unlisted.SHAPES) if args.unknown else [k for k in KINDS if k in specs]
+    names = [*unlisted.SHAPES, *TOOLS] if args.unknown else [k for k in KINDS if k in specs]
     chosen = args.kinds.split(",") if args.kinds else list(names)
     if wrong := [kind for kind in chosen if kind.partition(" +")[0] not in {*names}]:
         parser.error(f"there is no {', '.join(wrong)}; there are: {', '.join(names)}")

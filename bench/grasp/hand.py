@@ -130,9 +130,13 @@ class Bench:
 
     def there_and_back(self, ref: m.ObjectRef | None = None) -> str:
         """Grab it, from where manipulation says that the base has to stand if need be, carry it home, let go: `ok`, or
-        the stage and reason of the failure.
+        the stage and reason of the failure; and what was hit meanwhile.
         """
         self.observer.begin()
+        ended = self._there_and_back(ref)
+        return "; hit: ".join([ended, *self.observer.conclude(self.goal).hits])
+
+    def _there_and_back(self, ref: m.ObjectRef | None) -> str:
         grabbed = self.run("grab", "b.1", ref)
         for n in range(STANCES):
             if grabbed.stance is not None:

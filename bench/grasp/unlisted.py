@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 
 from bench.grasp.hand import Bench
+from bench.grasp.tools import TOOLS, tool
 from common import messages as m
 from common import topics
 from common.geometry import Array, yaw_quat
@@ -64,6 +65,8 @@ SHAPES: dict[str, Draw] = {
 
 
 def _spec(name: str, shape: str, rng: np.random.Generator) -> tuple[ObjectSpec, bool]:
+    if shape in TOOLS:
+        return tool(name, shape, rng), False
     kind, size, lies = SHAPES[shape](rng)
     if kind == "ball":
         size = (size[0],) * 3

@@ -17,7 +17,7 @@ from services.manipulation.execution.led_hand import LedHand
 from services.manipulation.execution.policy import PolicyError, load_policy
 from services.manipulation.execution.policy_executor import grab_by_policy
 from services.manipulation.execution.pull_executor import grab_or_pull
-from services.manipulation.execution.robot import Failure, Robot, Steps, T, go_home
+from services.manipulation.execution.robot import Failure, Robot, Steps, T
 from services.manipulation.grasps.grasp_store import GraspStore
 from services.manipulation.planning.object_source import ObjectSource
 
@@ -109,7 +109,7 @@ class ManipulationService:
         self._led.left_out = False
         self._goal = m.ManipulationGoal(goal="home", id=self._io.new_id(self.NAME))
         self._waiting_since = self._robot.now
-        self._steps = self._with_planner(go_home(self._robot))
+        self._steps = self._with_planner(recovery.go_home(self._robot))
 
     def _sequence(self, verb: str, rest: str) -> Steps[str] | None:
         robot = self._robot
@@ -120,7 +120,7 @@ class ManipulationService:
         if verb == "place" and rest:
             return self._place(rest)
         if verb == "home" and not rest:
-            return self._with_planner(go_home(robot))
+            return self._with_planner(recovery.go_home(robot))
         return None
 
     def _with_planner(self, steps: Steps[T]) -> Steps[T]:

@@ -8,6 +8,7 @@ import pytest
 
 from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
+from services.manipulation.arm.trajectory import whole
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.target import Target
@@ -34,7 +35,7 @@ def test_on_its_way_home_the_arm_keeps_clear_of_what_it_put_down() -> None:
     held = GraspedObject("box", "box", turn, offset, size, 0.06, yaw)
     plan = plan_place(planner, held, [spot], 0.46, 0.004, [], planner.arm.home.copy())
     planner.arm.set_obstacles([Obstacle((*spot, 0.46 + size[2] / 2), size, yaw)])
-    way = [plan.retreat[-1], *plan.home]
+    way = [plan.retreat[-1], *whole(plan.home)]
     between = (a + (b - a) * s for a, b in pairwise(way) for s in np.linspace(0, 1, 40))
     assert not any(planner.arm.collides(q) for q in between)
 
@@ -127,12 +128,58 @@ def test_a_path_is_free_of_everything_by_a_margin_as_long_as_it_is_not_said_to_b
     end = planner.ik.solve(above, seeds(arm, above, arm.home))
     assert end is not None
     table = Obstacle((0.9, 0.0, 0.40), (0.8, 0.8, 0.3))
-    far, near = planner.up_to_near([arm.home, end], [table])
+    (far, near) = (leg.path for leg in planner.legs([arm.home, end], [table]))
     assert near[0] is far[-1] and near[-1] is end
     arm.set_obstacles(inflated([table], 0.9 * NEAR), 0.0)
     assert not any(arm.collides(a + (far[-1] - a) * s) for a in far[:1] for s in np.linspace(0, 0.95, 40))
     assert any(arm.collides(near[0] + (end - near[0]) * s) for s in np.linspace(0, 1, 40))
-    assert planner.up_to_near([arm.home, end], []) == ([arm.home, end], [])
+    assert [leg.near for leg in planner.legs([arm.home, end], [table])] == [False, True]
+    assert [leg.near for leg in planner.legs([arm.home, end], [])] == [False]
+    ways = planner.legs([arm.home, end], [], leaving=0.15)
+    assert [leg.near for leg in ways] == [True, False], "slowly at first with what was just lifted"
+    assert np.linalg.norm(arm.pose(ways[1].path[0]).position - arm.pose(arm.home).position) < 0.15 + 0.05
+
+
+def test_what_is_held_counts_where_the_way_leads_near_something() -> None:
+    planner = Planner(own().mjcf, 0)
+    arm, above = planner.arm, Pose(np.array([0.55, 0.0, 0.75]), approach_rotation(0.0, np.pi / 2))
+    end = planner.ik.solve(above, seeds(arm, above, arm.home))
+    table = Obstacle((0.9, 0.0, 0.40), (0.8, 0.8, 0.3))
+    assert end is not None and not any(leg.near for leg in planner.legs([arm.home, end], [table]))
+    arm.hold(np.array([0.03, 0.03, 0.15]), np.array([0.0, 0.0, 0.2]))
+    assert planner.legs([arm.home, end], [table])[-1].near
+
+
+def test_the_hand_keeps_away_from_its_own_shoulder_and_upper_arm() -> None:
+    """`folded`: between 5 and 15 mm from the shoulder, which it does not touch."""
+    planner = Planner(own().mjcf, 0)
+    arm = planner.arm
+    arm.set_obstacles((), 0.0)
+    folding = [arm.home + np.array([0, 0, 0, 0, 0, bend, 0]) for bend in np.arange(0.0, -1.2, -0.005)]
+    free = list(takewhile(lambda q: not arm.collides(q), folding))
+    pairs = arm.contact_names(folding[len(free)])
+    assert {name for pair in pairs for name in pair} & {"shoulder_link", "shoulder", "half_arm_1_link", "upper_arm"}
+    arm.set_obstacles((), 0.015)
+    folded = next(q for q in free if arm.collides(q))
+    arm.set_obstacles((), 0.005)
+    assert not arm.collides(folded), "where it has to it comes nearer"
+    planner.surround((), arm.home)
+    assert arm.collides(folded)
+
+
+def test_a_carry_pose_that_has_little_room_is_better_than_none() -> None:
+    planner = Planner(own().mjcf, 0)
+    turn, offset = approach_rotation(0.0, np.pi / 6), np.array([0.0, 0.0, 0.05])
+    start = planner.ik.solve(
+        above := Pose(np.array([0.6, 0.0, 0.8]), turn), seeds(planner.arm, above, planner.arm.home)
+    )
+    assert start is not None
+    for size in np.arange(0.06, 0.4, 0.02):
+        held = GraspedObject("box", "box", turn, offset, (size, size, 0.1), 0.06, 0.0)
+        planner.arm.hold(*held.box())
+        planner.arm.set_obstacles((), 0.0)
+        clear = any(not planner.arm.collides(planner.arm.nearest_turn(c, start)) for c in planner.carries)
+        assert not clear or planner.to_carry(held, start, ()), f"{size:.2f} m"
 
 
 def test_what_was_found_for_a_target_is_found_once() -> None:

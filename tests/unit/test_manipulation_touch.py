@@ -24,10 +24,11 @@ from services.manipulation.arm.touch import (
     tells_weight,
     watch,
 )
-from services.manipulation.arm.trajectory import back_along, divided, timed, turned_back
+from services.manipulation.arm.trajectory import back_along, divided, legs, timed, turned_back, whole
 from services.manipulation.execution.closing import FARTHEST, STANDS, Yielding, close
 from services.manipulation.execution.place_executor import lower
-from services.manipulation.execution.robot import DT, Failure, Robot, Steps, go_home
+from services.manipulation.execution.recovery import go_home
+from services.manipulation.execution.robot import DT, Failure, Robot, Steps
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, STANDING, set_down
 from services.manipulation.grasps.grasp import approach_rotation
@@ -124,6 +125,14 @@ def test_a_divided_path_is_the_same_way() -> None:
         assert near[-1] == pytest.approx(np.full(7, end), abs=0.061) and near[-1] is far[0]
         assert [*near[:-1], *far[1:]] == path
     assert divided(path, lambda q: True) == (path, [])
+
+
+def test_a_short_way_in_the_open_between_near_things_is_followed_as_slowly() -> None:
+    path = [np.full(7, v) for v in (0.0, 1.0, 2.0)]
+    for gap, expected in ((0.2, [False, True, False]), (0.6, [False, True, False, True, False])):
+        parts = legs(path, lambda q, gap=gap: 0.3 < q[0] < 0.7 or 0.7 + gap < q[0] < 1.7)
+        assert [leg.near for leg in parts] == expected
+        assert [q for q in whole(parts) if any(q is corner for corner in path)] == path
 
 
 @pytest.mark.parametrize(("way", "force"), [("any", -40.0), ("down", -40.0), ("up", 40.0)])

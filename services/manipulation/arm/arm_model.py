@@ -16,8 +16,6 @@ BOXES = 24
 FAR = 50.0
 # What the open fingers leave free beside the thing they go around [m].
 FINGER_ROOM = 0.009
-
-
 Solid = Literal["box", "cylinder", "ellipsoid"]
 """What stands for an object or a piece of furniture where distances and collisions are computed."""
 
@@ -64,8 +62,9 @@ class Pose:
         return Pose(self.position + offset, self.rotation)
 
 
-HELD = 0.12
-"""Half extents [m] the held box is compiled with: bounds of the broad phase that no carried object exceeds."""
+HELD = 0.4
+"""Half extents [m] the held box is compiled with, around the pinch point. Chosen: bounds of the broad phase that no
+carried object exceeds; a bottle taken at its neck reaches 0.25 m below it, and what is beyond collides with nothing."""
 
 
 STAND_IN = "stand_in"
@@ -73,16 +72,22 @@ STAND_IN = "stand_in"
 
 
 OWN_GAP = 0.005
-"""Distance [m] that the arm keeps from the base in straight motions: it lags by up to .03 rad, 5 mm at the elbow."""
+"""Distance [m] that the arm keeps from the robot in straight motions: it lags by up to .03 rad, 5 mm at the elbow."""
 WIDEST_GAP = 0.02
-"""Distance [m] from which the base and its mast are looked at where the arm has to keep away from them."""
+"""Distance [m] from which the robot is looked at where the arm has to keep away from it. Chosen: links that are not
+neighbours are farther from each other however the arm bends, a wrist 25 mm from its forearm."""
+TRUNK = 4
+"""Joints from the base on whose links the rest of the arm, and what the hand holds, keep away from: those up to the
+elbow and the forearm. The links after that are as near to each other in any configuration as they are built."""
 
 
 def planning_model(robot_mjcf: str) -> Any:
     """The robot's compiled model plus movable boxes and, at the pinch point, a box that stands for a held object."""
     spec: Any = mujoco.MjSpec.from_string(robot_mjcf)
-    for geom in spec.body("base").geoms:
-        geom.margin = WIDEST_GAP
+    links = [spec.joint(name).parent for name in ARM[:TRUNK]]
+    for link in (spec.body("base"), links[0].parent, *links):
+        for geom in link.geoms:
+            geom.margin = WIDEST_GAP
     kind = mujoco.mjtGeom.mjGEOM_BOX
     for i in range(BOXES):
         box = spec.worldbody.add_body(name=f"box_{i}", mocap=True, pos=[FAR, FAR, i])
@@ -149,7 +154,7 @@ class ArmModel:
     def set_obstacles(self, obstacles: Sequence[Obstacle], gap: float = OWN_GAP) -> None:
         """Put solids around the robot, the most important first; those over the limit are left out.
 
-        `gap`: how far the arm keeps from the base and its mast [m], WIDEST_GAP at most.
+        `gap`: how far the arm keeps from the robot itself [m], WIDEST_GAP at most.
         """
         self._gap = gap
         nearest = self._around = obstacles[:BOXES]
@@ -207,15 +212,13 @@ class ArmModel:
         return Pose(self.data.site_xpos[self.pinch].copy(), rotation.copy())
 
     def collides(self, q: Array) -> bool:
-        """True when the robot touches a box or itself, or the arm comes nearer to the base than it is to keep."""
+        """True when the robot touches a box, or the arm comes nearer to the robot itself than it is to keep."""
         self.place(q)
         mujoco.mj_collision(self.model, self.data)
         return bool(self.data.ncon and len(self._pairs()))
 
     def meets_itself(self, path: Iterable[Array]) -> bool:
-        """True when the robot, on a path of configurations (7,), touches itself or comes nearer to its base than it is
-        to keep, wherever the boxes are.
-        """
+        """True when the robot, on a path of (7,), comes nearer to itself than it is to keep, wherever the boxes are."""
         for q in path:
             self.collides(q)
             if self._own[self._pairs()].all(axis=1).any():

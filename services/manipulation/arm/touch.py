@@ -1,7 +1,7 @@
 """What the hand meets, felt in the joints' torques: motions near things end when it is more than they should be."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import mujoco
 import numpy as np
@@ -70,6 +70,12 @@ class Reaction:
     def _place(self, joints: Array) -> None:
         self._data.qpos[self._qpos] = joints
         mujoco.mj_kinematics(self._model, self._data)
+
+
+class Compliance(Protocol):
+    """Moves the hand by what it feels: set-points (7,) [rad] from joints (7,) [rad] and torques (7,) [Nm]."""
+
+    def step(self, joints: Array, torques: Array) -> Array: ...
 
 
 def load_limit(grip_effort: float) -> float:

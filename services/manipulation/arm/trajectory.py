@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,9 @@ EXTEND = 0.35
 """Length [rad] of a new branch of the search tree in joint space. Chosen: some five collision checks."""
 MAX_NODES = 1500
 """Samples after which the search gives up. Chosen: half a second of planning."""
+PAUSE = 0.3
+"""Length [rad] of a path in the open, between two near things, that is passed as slowly as they are. Chosen: what is
+gained there the arm loses on stopping twice."""
 _SMOOTH = 5
 """Set-points over which corners of a path are averaged: 0.1 s at 50 Hz."""
 
@@ -111,6 +115,39 @@ def divided(path: Sequence[Array], first: Callable[[Array], bool]) -> tuple[list
                 return [*head, q], [q, *path[n + 1 :]]
         head.append(b)
     return head, []
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A part of a joint path, a list of (7,); `near` something, so that it is followed slowly."""
+
+    path: list[Array]
+    near: bool
+
+
+def legs(path: Sequence[Array], near: Callable[[Array], bool]) -> list[Leg]:
+    """A path in parts that are `near` something or not, in turn; each begins where the one before it ends."""
+    found: list[Leg] = []
+    left = list(path)
+    while left:
+        slow = near(left[0])
+        head, left = divided(left, near if slow else lambda q: not near(q))
+        slow = slow or (bool(found) and bool(left) and _length(head) < PAUSE)
+        if found and found[-1].near == slow:
+            found[-1] = Leg([*found[-1].path, *head[1:]], slow)
+        else:
+            found.append(Leg(head, slow))
+    return found
+
+
+def whole(parts: Sequence[Leg]) -> list[Array]:
+    """The path that was divided into parts."""
+    return [q for part in parts for q in part.path]
+
+
+def _length(path: Sequence[Array]) -> float:
+    """The way [rad] of the joint that moves most."""
+    return float(sum(np.abs(b - a).max() for a, b in itertools.pairwise(path)))
 
 
 def timed(path: Sequence[Array], speed: float, acceleration: float, dt: float) -> Array:

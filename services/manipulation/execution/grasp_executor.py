@@ -2,31 +2,32 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from common import messages as m
 from common import topics
-from common.geometry import quat_matrix, yaw_quat
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.arm.contacts import Contact, came_around
-from services.manipulation.arm.touch import BLOCKED, HIT, MET, TOO_HEAVY, TOUCHED, load_limit
-from services.manipulation.arm.trajectory import back_along, divided, parallel
+from services.manipulation.arm.touch import BLOCKED, HIT, TOO_HEAVY, TOUCHED, load_limit
+from services.manipulation.arm.trajectory import back_along, parallel, whole
 from services.manipulation.execution.closing import close
+from services.manipulation.execution.grasp_checks import (
+    BAD_HOLD,
+    check_hold,
+    check_width,
+    insert_share,
+    note_contact,
+    touched_from,
+)
 from services.manipulation.execution.grasp_choice import chosen, surroundings
-from services.manipulation.execution.recovery import retreat
-from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.recovery import go_home, retreat
+from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
-from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import shown
-from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge, settled
+from services.manipulation.grasps.grasp_verification import settled
 from services.manipulation.planning.plan_grab import GrabPlan
 from services.manipulation.planning.planning_scene import target_of
 from services.manipulation.planning.straight_grab import with_reserve
 
-BAD_HOLD = "BAD_HOLD"
-"""Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
 TOO_WIDE = "TOO_WIDE"
 """Code: the object does not fit between the open fingers."""
 WEIGHED = 3
@@ -35,21 +36,6 @@ the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
 STRAINING, SURE = 0.06, 0.75
 """Share of the joint speed for the first point of the lift, and of what the pads hold as the most it may weigh there.
 Chosen: beyond that they slip, and knock with 100 N; the arm strains by 10 N/mm and stops in 40 ms."""
-SAME_WIDTH = 0.002
-"""Difference [m] up to which two grasps of a measured object have felt the same width: the play of the fingers."""
-INSERTING = 0.3
-"""Share of the joint speed around the object: with 8 mm in the 40 ms until it stops the hand knocks with some 50 N."""
-
-
-LEAVING = 0.15
-"""Way [m] of the hand from where it has lifted something on which it may meet what stands around. Chosen: at the speed
-of transit a bowl that hung askew met its shelf with 67 N in the 60 ms until the arm stood."""
-ARRIVING = 0.2
-"""Share of the joint speed from where the arm comes near something. Chosen: at the whole of it a pad knocked on an edge
-that was a little nearer than believed with 143 N, at 0.3 with 77, in the 60 ms until it is felt and the arm stands."""
-TIGHT, GENTLY = 0.008, 0.1
-"""Room [m] beside either finger below which it may meet the object, and the share of the joint speed then: a third of
-the speed, a third of the knock."""
 
 
 def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
@@ -68,7 +54,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
-            plan = yield from chosen(robot, found, target, around, frozenset(tried), _touched(robot, found.label))
+            plan = yield from chosen(robot, found, target, around, frozenset(tried), touched_from(robot, found.label))
         except Failure as failure:
             raise (last if tried else failure) from None
         candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
@@ -116,22 +102,20 @@ def _execute_grab(
     config = robot.config
     hand = planner_of(robot).arm.hand
     yield from robot.move_gripper(hand.share(with_reserve(hand, plan.grasp.width)))
-    yield from robot.follow(plan.reach, config.joint_speed)
-    if plan.near:
-        yield from robot.follow(plan.near, config.joint_speed * ARRIVING, most=MET)
+    yield from robot.travel(plan.reach)
     plan = yield from aimed(robot, plan, goal, found)
     if plan.opening is not None:
         yield from robot.move_gripper(hand.share(plan.opening))
     free = yield from robot.at_rest()
     try:
-        yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
+        yield from robot.follow(plan.insert, config.joint_speed * insert_share(robot, plan), robot.guard(free))
         robot.phase = "grasp"
         at = yield from close(robot, plan.insert[-1], robot.guard(free, HIT, "down"))
         plan = replace(plan, lift=parallel(plan.lift, at))
-        _judge(robot, plan, None, widths)
+        check_hold(robot, plan, None, widths)
     except Failure as failure:
         if failure.code == TOUCHED:
-            _note_contact(robot, plan, found)
+            note_contact(robot, plan, found)
         yield from _withdraw(robot, plan)
         raise
     held = closed = robot.grip.width
@@ -145,13 +129,13 @@ def _execute_grab(
             # What begins to slip is set back from a few centimetres, and falls nowhere.
             if plan.doubt and not plan.grasp.rim:
                 held = settled(robot.grip, closed, config)
-            _judge(robot, plan, held, widths)
+            check_hold(robot, plan, held, widths)
         yield from robot.follow(plan.lift[WEIGHED:], config.joint_speed * 0.5)
-        _judge(robot, plan, held, widths)
-        _check_width(robot, plan, widths)
-        way.append(plan.carry)
+        check_hold(robot, plan, held, widths)
+        check_width(robot, plan, widths)
+        way.append(whole(plan.carry))
         yield from _carry(robot, plan)
-        _judge(robot, plan, held, widths)
+        check_hold(robot, plan, held, widths)
     except Failure as failure:
         if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY, BLOCKED) and robot.grip.holds():
             yield from _set_back(robot, plan, way, free)
@@ -160,30 +144,6 @@ def _execute_grab(
     robot.sent_to.pop(plan.grasped.label, None)
     robot.source.remember(plan.grasped.label, None, "", robot.now)
     return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
-
-
-def _inserting(robot: Robot, plan: GrabPlan) -> float:
-    """Share of the joint speed around the object, by the room that the fingers have if it is as wide as may be."""
-    opening = with_reserve(planner_of(robot).arm.hand, plan.grasp.width)
-    room = (min(plan.opening or opening, opening) - plan.grasp.width - plan.doubt) / 2
-    return GENTLY if room < TIGHT else INSERTING
-
-
-def _note_contact(robot: Robot, plan: GrabPlan, found: WorldObject) -> None:
-    """Remember that the open fingers touched the object, or something before it, on their way around it."""
-    hand, wanted = planner_of(robot).reaction.position(robot.joints), plan.grasp.pose
-    around = came_around(hand, wanted.position, plan.grasped.size, PAD)
-    turn = quat_matrix(yaw_quat(robot.base[2]))
-    robot.contacts.add(found.label, Contact(turn @ wanted.rotation, found.seen_at, around))
-    robot.io.log.info(
-        "contact", object=found.label, around=around, mm=round(1000 * float(np.linalg.norm(hand - wanted.position)))
-    )
-
-
-def _touched(robot: Robot, label: str) -> list[Array]:
-    """Rotations (3, 3) of the hand at contacts with the object, in the base frame."""
-    turn = quat_matrix(yaw_quat(robot.base[2]))
-    return [turn.T @ rotation for rotation in robot.contacts.rotations(label)]
 
 
 def _withdraw(robot: Robot, plan: GrabPlan) -> Steps[None]:
@@ -216,33 +176,10 @@ def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]], free: Array)
     yield from _withdraw(robot, plan)
 
 
-def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
-    """A known object that has not its width between the fingers is held by something else than its body.
-
-    Raises:
-        Failure: BAD_HOLD.
-    """
-    held, width = plan.grasped, robot.grip.width
-    spec = robot.io.household.thing(held.label)
-    if spec is None or plan.grasp.rim or plan.doubt or not held_badly(robot.grip, plan.grasp.width, spec.kind):
-        return
-    if any(abs(width - other) < WIDTH_ERROR for other in widths):
-        robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))
-        return
-    widths.append(width)
-    raise Failure(BAD_HOLD, f"width {1000 * width:.1f} mm where the {held.label} has {1000 * plan.grasp.width:.1f}")
-
-
 def _carry(robot: Robot, plan: GrabPlan) -> Steps[None]:
-    """To the carry pose, slowly at first; where something is met, as by what hangs askew in the hand, up and on by
-    another path."""
-    speed, reaction = robot.config.joint_speed, planner_of(robot).reaction
-    start = reaction.position(plan.carry[0])
-    near, far = divided(plan.carry, lambda q: float(np.linalg.norm(reaction.position(q) - start)) < LEAVING)
+    """To the carry pose; where something is met, as by what hangs askew in the hand, up and on by another path."""
     try:
-        yield from robot.follow(near, speed * SLOWLY)
-        if far:
-            yield from robot.follow(far, speed * 0.8)
+        yield from robot.travel(plan.carry, 0.8)
     except Failure as failure:
         if failure.code != BLOCKED or not robot.grip.holds():
             raise
@@ -250,21 +187,5 @@ def _carry(robot: Robot, plan: GrabPlan) -> Steps[None]:
         path = yield from robot.work(
             retreat, planner_of(robot), plan.grasped, robot.joints.copy(), plan.around, robot.config.lift_height
         )
-        yield from robot.follow(path, speed * SLOWLY)
+        yield from robot.travel(path, SLOWLY)
     yield from robot.wait(0.2)
-
-
-def _judge(robot: Robot, plan: GrabPlan, at_close: float | None, widths: list[float]) -> None:
-    """Raises `Failure` unless the object is held; a measured width that was felt otherwise twice was measured wrong."""
-    nominal, width = 0.0 if plan.grasp.rim else plan.grasp.width, robot.grip.width
-    if plan.doubt and any(abs(width - other) < SAME_WIDTH for other in widths):
-        nominal = 0.0 if plan.grasp.rim else width
-    code = judge(
-        robot.grip, nominal, at_close, robot.config, plan.doubt, certain=plan.doubt > 0 and not plan.grasp.on_surface
-    )
-    if code:
-        if plan.doubt and robot.grip.holds():
-            widths.append(width)
-        was = "" if at_close is None else f", was {at_close * 1000:.1f} mm"
-        detail = f"width {width * 1000:.1f} mm{was}, force {robot.grip.force:.0f} N"
-        raise Failure(code, detail)

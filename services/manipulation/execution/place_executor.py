@@ -11,8 +11,9 @@ from common.geometry import compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import TOUCHED
+from services.manipulation.execution.recovery import go_home
 from services.manipulation.execution.releasing import STUCK, let_go
-from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.execution.setting_down import probe, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
@@ -133,8 +134,7 @@ def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
 
 
 def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str, surface: float) -> Steps[str]:
-    config = robot.config
-    yield from robot.follow(plan.reach, config.joint_speed * 0.8)
+    yield from robot.travel(plan.reach, 0.8)
     if robot.grip.empty:
         robot.grasped = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
@@ -145,7 +145,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
         yield from let_go(robot, plan.retreat, held)
         robot.grasped = None
         yield from robot.move_gripper(0.0)
-        yield from robot.follow(plan.home, config.joint_speed)
+        yield from robot.travel(plan.home)
     except Failure as failure:
         if failure.code == STUCK:
             raise

@@ -12,7 +12,8 @@ from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.touch import TOUCHED
 from services.manipulation.execution.grasp_executor import TOO_WIDE
 from services.manipulation.execution.neighbours import grab_with_room, reference
-from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.recovery import go_home
+from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.over_edge import flat_and_wide
 from services.manipulation.planning.motion_planner import Planner
 from services.manipulation.planning.overhang import LET_GO, Pull, can_pull, facing_edge, plan_pull
@@ -100,7 +101,7 @@ def _stance(
 def _execute(robot: Robot, plan: Pull, found: WorldObject) -> Steps[WorldObject]:
     speed, hand = robot.config.joint_speed, planner_of(robot).arm.hand
     yield from robot.move_gripper(hand.share(plan.opening))
-    yield from robot.follow(plan.reach, speed)
+    yield from robot.travel(plan.reach)
     free = yield from robot.at_rest()
     stuck: Failure | None = None
     try:
@@ -117,7 +118,7 @@ def _execute(robot: Robot, plan: Pull, found: WorldObject) -> Steps[WorldObject]
         found = _remember(robot, plan, found)
     if stuck is None:
         yield from robot.follow(plan.leave, speed * 0.5)
-        yield from robot.follow(plan.home, speed)
+        yield from robot.travel(plan.home)
     else:
         yield from _leave(robot)
     yield from robot.move_gripper(0.0)

@@ -6,7 +6,9 @@ import numpy as np
 
 from common.messages import ObjectRef
 from services.manipulation.arm.arm_model import Array, Obstacle
-from services.manipulation.execution.robot import Failure, Robot, Steps, go_home
+from services.manipulation.arm.touch import BLOCKED
+from services.manipulation.arm.trajectory import Leg
+from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.planning_scene import obstacles
@@ -14,6 +16,23 @@ from services.manipulation.planning.planning_scene import obstacles
 NEAR = 0.15
 """Largest joint angle [rad] off a carry pose at which the arm counts as retracted. Chosen: no joint's lag is as
 large."""
+
+
+def go_home(robot: Robot) -> Steps[str]:
+    """The carry pose, by a path around what is known; around furniture at least where an object is in the way, which
+    need not be where it was believed once the hand was there. What is met is backed off, and passed slowly."""
+    for share in (1.0, SLOWLY):
+        known = [robot.source.objects(), []]
+        around = [obstacles(robot.io.household, robot.base, objects, margin=0.0) for objects in known]
+        path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
+        try:
+            yield from robot.follow(path, robot.config.joint_speed * share)
+            break
+        except Failure as failure:
+            if failure.code != BLOCKED or share == SLOWLY:
+                raise
+            robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+    return "arm at home"
 
 
 def at_carry(planner: Planner, joints: Array) -> bool:
@@ -29,8 +48,8 @@ def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | N
     return GraspedObject(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
 
 
-def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
-    """A joint path straight up by `lift` [m], then to a carry pose.
+def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Leg]:
+    """Legs of a joint path straight up by `lift` [m], then to a carry pose.
 
     Raises:
         PlanError: BLOCKED.
@@ -42,7 +61,7 @@ def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[
         if up is None:
             continue
         try:
-            return [*up, *planner.carry(held, up[-1], around)]
+            return [Leg([now, *up], near=True), *planner.carry(held, up[-1], around)]
         except PlanError:
             continue
     return planner.carry(held, now, around)
@@ -57,7 +76,7 @@ def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
         around = obstacles(robot.io.household, robot.base, robot.source.objects(), without=held.label)
         robot.phase = "retract"
         path = yield from robot.work(retreat, planner, held, robot.joints.copy(), around, config.lift_height)
-        yield from robot.follow(path, config.joint_speed * 0.5)
+        yield from robot.travel(path, 0.5)
         yield from robot.wait(0.2)
         if not robot.grip.holds():
             robot.grasped = None

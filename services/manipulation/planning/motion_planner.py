@@ -11,7 +11,7 @@ from common.kinds import kind_of
 from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.arm.ik import InverseKinematics
 from services.manipulation.arm.touch import Reaction
-from services.manipulation.arm.trajectory import connect, divided
+from services.manipulation.arm.trajectory import Leg, connect, legs
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
 from services.manipulation.grasps.evidence import as_held, believed, has_parts, seen_between
@@ -35,11 +35,14 @@ MAX_JUMP = 0.6
 """Largest change of a joint [rad] from one of them to the next. Chosen: more is another branch of the inverse
 kinematics."""
 TRANSIT_MARGINS = (0.02, 0.01, 0.005)
-"""Margins [m] around obstacles and the robot's base in free motion, widest first. Chosen: from the error of a sighting
+"""Margins [m] around obstacles and the robot itself in free motion, widest first. Chosen: from the error of a sighting
 at 2 m down to that of one at arm's length; the arm itself lags by up to .03 rad, 5 mm at the elbow."""
 NEAR = 0.05
-"""Distance [m] from what is known around up to which the arm goes slowly. Chosen: the error of localisation, 3 cm, with
-the lag of the arm and what a path moves between two collision checks."""
+"""Distance [m] from what is known around up to which the arm, and what it holds, goes slowly. Chosen: the error of
+localisation, 3 cm, with the lag of the arm and what a path moves between two collision checks."""
+LEAVING = 0.15
+"""Way [m] of the hand from where it has lifted something on which it may meet what stands around. Chosen: at the speed
+of transit a bowl that hung askew met its shelf with 67 N in the 60 ms until the arm stood."""
 # Tip and turn [rad] of the hand at the carry pose: for long objects it is turned or tips up, so that they stay clear.
 _CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
@@ -143,50 +146,55 @@ class Planner:
         arm = self.arm
         return antipodal(target, arm.forward, arm.hand.open, arm.widest)
 
-    def surround(self, around: Sequence[Obstacle], end: Array) -> None:
-        """Boxes, and the robot's base, with the widest transit margins that leave `end` free, else with none: the boxes
-        come first, the base keeps what it can where something else is near."""
+    def surround(self, around: Sequence[Obstacle], end: Array, others: Sequence[Array] = ()) -> None:
+        """Boxes, and the robot itself, with the widest transit margins that leave `end`, and one of the `others`, free,
+        else with none: the boxes come first, the robot keeps what it can where something else is near."""
         for margin, own in (*((m, m) for m in TRANSIT_MARGINS), *((0.0, m) for m in TRANSIT_MARGINS)):
             self.arm.set_obstacles(inflated(around, margin), own)
-            if not self.arm.collides(end):
+            if not self.arm.collides(end) and not (others and all(self.arm.collides(q) for q in others)):
                 return
         self.arm.set_obstacles(around, 0.0)
 
-    def up_to_near(self, path: Sequence[Array], around: Sequence[Obstacle]) -> tuple[list[Array], list[Array]]:
-        """A path in two: as long as the arm keeps `NEAR` away from everything around, and the rest."""
+    def legs(self, path: Sequence[Array], around: Sequence[Obstacle], leaving: float = 0.0) -> list[Leg]:
+        """A path in parts: where the arm, or what it holds, keeps `NEAR` away from everything around, and where not,
+        or where the hand has come less than `leaving` [m]."""
         self.arm.set_obstacles(inflated(around, NEAR), 0.0)
-        return divided(path, lambda q: not self.arm.collides(q))
+        start = self.arm.pose(path[0]).position
 
-    def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Array]:
+        def near(q: Array) -> bool:
+            return self.arm.collides(q) or float(np.linalg.norm(self.arm.pose(q).position - start)) < leaving
+
+        return legs(path, near)
+
+    def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Leg]:
         """A path to a carry pose with the object in hand, from wherever the arm is.
 
         Raises:
             PlanError: BLOCKED.
         """
-        self.arm.hold(*held.box())
-        self.surround(around, now)
-        path = self.to_carry(now, self.rng())
-        self.arm.hold(None)
+        path = self.to_carry(held, now, around)
         if path is None:
             raise PlanError("BLOCKED", f"no way to the carry pose with the {held.label} in hand")
         return path
 
-    def to_carry(self, start: Array, rng: np.random.Generator) -> list[Array] | None:
-        """A path to the first carry pose where the held object is clear of the arm."""
-        for carry in self.carries:
-            goal = self.arm.nearest_turn(carry, start)
-            if not self.arm.collides(goal):
-                path = connect(self.arm, start, goal, rng)
-                if path is not None:
-                    return path
-        return None
+    def to_carry(self, held: GraspedObject, start: Array, around: Sequence[Obstacle]) -> list[Leg] | None:
+        """A path to the first carry pose where the held object is clear of the arm; None if there is no way."""
+        goals, rng = [self.arm.nearest_turn(carry, start) for carry in self.carries], self.rng()
+        self.arm.hold(*held.box())
+        try:
+            self.surround(around, start, goals)
+            paths = (connect(self.arm, start, goal, rng) for goal in goals if not self.arm.collides(goal))
+            path = next((path for path in paths if path is not None), None)
+            return None if path is None else self.legs(path, around, LEAVING)
+        finally:
+            self.arm.hold(None)
 
     def to_home(self, now: Array, around: Sequence[Sequence[Obstacle]]) -> list[Array]:
         """A path to the carry pose around the first set of obstacles that leaves one; straight where none does."""
         self.arm.hold(None)
         goal = self.arm.nearest_turn(self.arm.home, now)
         for some in around:
-            self.surround(some, now)
+            self.surround(some, now, [goal])
             if path := connect(self.arm, now, goal, self.rng()):
                 return path
         return [now, goal]

@@ -16,7 +16,7 @@ from common.floor_plan import Receptacle
 from common.geometry import Pose2, Rectangle, compose, inverse
 from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
-from services.manipulation.arm.trajectory import connect
+from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.over_edge import is_round
@@ -55,15 +55,15 @@ LET_GO = 0.012
 
 @dataclass(frozen=True)
 class Pull:
-    """Joint paths (lists of (7,)) of the phases; `opening` [m] of the fingers; `line`: where the object (x, y, yaw) in
-    the base frame is at the configurations of `pull`.
+    """Joint paths (lists of (7,), or legs) of the phases; `opening` [m] of the fingers; `line`: where the object
+    (x, y, yaw) in the base frame is at the configurations of `pull`.
     """
 
-    reach: list[Array]
+    reach: list[Leg]
     lower: list[Array]
     pull: list[Array]
     leave: list[Array]
-    home: list[Array]
+    home: list[Leg]
     opening: float
     line: list[Pose2]
 
@@ -271,12 +271,15 @@ def _with_tilt(
     away = planner.straight(back[-1], off, off.moved(np.array([0.0, 0.0, lift]))) if back else None
     if back is None or away is None:
         return "no way off"
-    planner.surround(with_object(around, target.grown(0.0)), up[-1])
+    before = with_object(around, target.grown(0.0))
+    planner.surround(before, up[-1], [now])
     there = connect(arm, now, up[-1], rng)
     stands = Obstacle((ends[0], ends[1], target.position[2]), (2 * half[0], 2 * half[1], height), ends[2])
-    planner.surround(with_object(around, stands), away[-1])
-    home = connect(arm, away[-1], arm.nearest_turn(arm.home, away[-1]), rng)
+    after, goal = with_object(around, stands), arm.nearest_turn(arm.home, away[-1])
+    planner.surround(after, away[-1], [goal])
+    home = connect(arm, away[-1], goal, rng)
     if there is None or home is None:
         return "no path"
     own = [(x, y, math.remainder(target.yaw + turn - begins[2], math.tau)) for x, y, turn in (begins, *steps)]
-    return Pull(there, [*up[::-1], at], pull, [q, *back, *away], home, opening, own)
+    reach, leave = planner.legs(there, before), planner.legs(home, after)
+    return Pull(reach, [*up[::-1], at], pull, [q, *back, *away], leave, opening, own)

@@ -8,7 +8,7 @@ import numpy as np
 
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.arm.contacts import new_sides_first
-from services.manipulation.arm.trajectory import connect
+from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
@@ -21,19 +21,17 @@ from services.manipulation.planning.straight_grab import Miss, Way, opening_of, 
 
 @dataclass(frozen=True)
 class GrabPlan:
-    """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand.
+    """Joint paths (lists of (7,), or legs) of the phases, and the object as it will be attached to the hand.
 
-    `reach` leads to where the arm comes near something, `near` from there to the pre-grasp.
     `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of;
     `options`: the grasps that were considered; `doubt` [m]: how far off the width between the pads may be.
     """
 
     grasp: Grasp
-    reach: list[Array]
-    near: list[Array]
+    reach: list[Leg]
     insert: list[Array]
     lift: list[Array]
-    carry: list[Array]
+    carry: list[Leg]
     grasped: GraspedObject
     opening: float | None = None
     around: Sequence[Obstacle] = ()
@@ -115,26 +113,24 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
     lines = straight_parts(planner, target, grasp, way, now)
     if isinstance(lines, Miss):
         return lines
-    arm, around, rng = planner.arm, way.around, planner.rng()
+    arm, around = planner.arm, way.around
     at, back, up = lines.at, lines.back, lines.up
     arm.open_fingers()
     everything = with_object(around, target.grown(0.0))
-    planner.surround(everything, back[-1])
-    there = connect(arm, now, back[-1], rng)
+    planner.surround(everything, back[-1], [now])
+    there = connect(arm, now, back[-1], planner.rng())
     if there is None:
         return Miss("no path to the pre-grasp")
-    reach, near = planner.up_to_near(there, everything)
+    reach = planner.legs(there, everything)
     attached = attach(target, grasp)
     arm.hold(*attached.box())
     up += over_neighbours(planner, target, grasp, around, up[-1], lines.lift)
-    planner.surround(around, up[-1])
-    away = planner.to_carry(up[-1], rng)
-    arm.hold(None)
+    away = planner.to_carry(attached, up[-1], around)
     if away is None:
         return Miss("no path to the carry pose")
     opening, doubt = opening_of(planner, grasp, way), MEASURED + 2 * target.spread
     return GrabPlan(
-        grasp, reach, near, [at, *back][::-1], [at, *up], away, attached, opening, around,
+        grasp, reach, [at, *back][::-1], [at, *up], away, attached, opening, around,
         doubt=doubt if target.measured or grasp.on_surface else 0.0,
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
-from services.manipulation.arm.trajectory import connect
+from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.edge_spots import Placement
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
@@ -30,18 +30,18 @@ AMPLE = 0.4
 
 @dataclass(frozen=True)
 class PlacePlan:
-    """Joint paths of the phases, and where the object will stand (x, y in the base frame).
+    """Joint paths of the phases, or legs, and where the object will stand (x, y in the base frame).
 
     `deeper` goes on from the end of `lower` where nothing was felt until there; `grounded`: at its end the hand itself
     is on the surface.
     """
 
-    reach: list[Array]
+    reach: list[Leg]
     lower: list[Array]
     deeper: list[Array]
     grounded: bool
     retreat: list[Array]
-    home: list[Array]
+    home: list[Leg]
     spot: tuple[float, float]
 
 
@@ -111,23 +111,25 @@ def _try_place(
         return way
     high, down = way.high, way.down
     arm.hold(*held.box())
-    planner.surround(around, high)
+    planner.surround(around, high, [now])
     there = connect(arm, now, high, rng)
+    reach = planner.legs(there, around) if there is not None else []
     arm.hold(None)
-    arm.set_obstacles(around)
-    if there is None:
+    if not reach:
         return "no path"
     stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + way.turned)
     beside = with_object(around, stands)
     back = _leave(planner, held, way, beside)
     if back is None:
         return "no way back"
-    planner.surround(beside, back[-1])
-    home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
+    goal = arm.nearest_turn(arm.home, back[-1])
+    planner.surround(beside, back[-1], [goal])
+    home = connect(arm, back[-1], goal, rng)
     if home is None:
         return "no path home"
+    home_way = planner.legs(home, beside)
     deeper, grounded = _deeper(planner, way, around)
-    return PlacePlan(there, [high, *down], deeper, grounded, [down[-1], *back], home, spot)
+    return PlacePlan(reach, [high, *down], deeper, grounded, [down[-1], *back], home_way, spot)
 
 
 @dataclass(frozen=True)
