@@ -15,7 +15,7 @@ from common.geometry import Array
 from common.household import Household
 from common.messages import Sighting
 from common.naming.names import normalise
-from common.viewpoints import Viewpoints
+from common.viewpoints import Mask, Viewpoints
 
 HALF_LIFE = 30 * 86400.0
 """Time [s] after which a visit counts half; chosen: habits of a household change over weeks."""
@@ -99,6 +99,16 @@ def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoi
         if of_it.any():
             likely[of_it] = max(LEAST, found.get(r.name, 0.0) * count / int(of_it.sum()))
     return likely
+
+
+def points_at(place: str, household: Household, viewpoints: Viewpoints) -> Mask:
+    """Which of a search's points (p,) are on the surface or seat of that name, or in the room."""
+    surfaces = [*(r for r in household.receptacles if r.kind != "bin"), *household.seats]
+    rooms = (household.room_at(*r.center[:2]) for r in surfaces)
+    there = [
+        r.name == place or (room is not None and room.name == place) for r, room in zip(surfaces, rooms, strict=True)
+    ]
+    return np.array(there, bool)[viewpoints.surface]
 
 
 def _prior(kind: str, household: Household, surfaces: Sequence[Receptacle]) -> Array:

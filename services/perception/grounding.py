@@ -12,16 +12,11 @@ from common.household import Household
 from common.messages import PossibleObject, WorldObject
 from common.naming.likeness import LEAST, PLAIN, likeness, partly
 from common.naming.names import ALIKE, match_object, normalise, unnumbered
+from common.naming.place_named import FLOOR, take_place
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
-_PLACE = re.compile(
-    r"^(?P<thing>.+?)(?: (?:which|s|is|are|lies|lying|stands|standing|sits|sitting))*"
-    r" (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$"
-)
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
-FLOOR = "floor"
-"""The place of what stands on nothing else; behind the name of a room, of what does so there."""
 MOST = 6
 """Objects of which it is told that they may be meant. Chosen: more than anybody is asked about."""
 Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
@@ -99,7 +94,7 @@ def ground(
 
 def parsed(query: str, household: Household, synonyms: Mapping[str, str]) -> Phrase:
     """The parts of a phrase; `synonyms`: what is said for what is meant."""
-    place, words = _take_place(_plain(query, synonyms), household)
+    place, words = take_place(_plain(query, synonyms), household)
     size = next((w for w in words.split() if w in _SIZE), "")
     words = " ".join(w for w in words.split() if w not in _SIZE)
     match = _SIDE.match(words)
@@ -128,40 +123,6 @@ def _plain(query: str, synonyms: Mapping[str, str]) -> str:
     for said, meant in synonyms.items():
         words = re.sub(rf"\b{re.escape(normalise(said))}\b", meant, words)
     return words
-
-
-def _take_place(words: str, household: Household) -> tuple[str, str]:
-    """The receptacle or room that a phrase ends with, and the phrase without it."""
-    match = _PLACE.match(words)
-    if match is None:
-        return "", words
-    wanted, thing = match["place"], match["thing"]
-    if wanted == FLOOR:
-        return FLOOR, thing
-    rooms = [(r.name, r.aliases) for r in household.rooms]
-    if FLOOR in wanted.split():
-        # "The bedroom floor", "the floor in the bedroom".
-        where = " ".join(w for w in wanted.split() if w not in (FLOOR, "in"))
-        room = _named(where, rooms)
-        return (f"{room} {FLOOR}", thing) if room else ("", words)
-    seats = [(f.name, (_seat(f.name), *_aliases(_seat(f.name), household))) for f in household.furniture]
-    place = _named(wanted, [(r.name, r.aliases) for r in household.receptacles] + rooms + seats)
-    return (place, thing) if place else ("", words)
-
-
-def _seat(furniture: str) -> str:
-    """What people call furniture by whose seat things lie on: a sofa."""
-    return furniture.removesuffix(" seat")
-
-
-def _aliases(name: str, household: Household) -> Sequence[str]:
-    """Other names of the place before furniture of that name."""
-    return next((p.aliases for p in household.places if p.name == name), ())
-
-
-def _named(wanted: str, names: Sequence[tuple[str, Sequence[str]]]) -> str:
-    """The first of several names that words are, or are another name for; "" for none."""
-    return next((name for name, aliases in names if wanted in map(normalise, (name, *aliases))), "")
 
 
 def is_at(o: WorldObject, place: str, household: Household) -> bool:

@@ -11,6 +11,8 @@ from common import topics
 from common.approach import ROOM, clearance
 from common.household import told
 from common.scene import load_scene
+from common.viewpoints import viewpoints_of
+from common.whereabouts import points_at
 from services.brain.config import BrainConfig
 from services.brain.world.standing_poses import place_pose, standing_pose
 from services.sim.layout import place_objects
@@ -290,6 +292,31 @@ def test_search_turns_then_looks_from_elsewhere() -> None:
     see(bench, 3)
     approach(bench, 4)
     bench.manip(1)
+
+
+@pytest.mark.parametrize(
+    ("steps", "place"),
+    [
+        ([m.PlanStep(action="find", text="red mug from the bed", **MUG), *FETCH[1:]], "bed"),
+        ([m.PlanStep(action="find", text="red mug from the sofa", **MUG), *FETCH[1:]], "sofa seat"),
+        ([m.PlanStep(action="navigate", target="study shelf"), *FETCH], "study shelf"),
+    ],
+)
+def test_a_search_looks_first_where_the_thing_was_said_to_be(steps: list[m.PlanStep], place: str) -> None:
+    def see_nothing(count: int) -> m.NavGoal:
+        query = bench.next_goal(QUERY, count)
+        bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=False))
+        return bench.next_goal(POSE, count)
+
+    bench = planned(steps)
+    if steps[0].action == "navigate":
+        bench.drove(bench.nav(1))
+    views = viewpoints_of(SCENE, None)
+    there, count = points_at(place, SCENE, views), 1
+    while (goal := see_nothing(count)) and bench.state.step == "search: attempt 1":
+        bench.drove(goal)
+        count += 1
+    assert views.visible((goal.x, goal.y, goal.theta))[there].any()
 
 
 def test_a_search_that_is_held_up_on_its_way_looks_elsewhere_first() -> None:

@@ -1,5 +1,6 @@
 """What the leaves of both trees share: time, bus, mission, gripper, peers, and what is shown to the world."""
 
+from itertools import pairwise
 from typing import Any
 
 from common import messages as m
@@ -7,10 +8,12 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Array, Pose2
 from common.language.meaning import is_question
+from common.naming.names import normalise
+from common.naming.place_named import FLOOR, place_named, take_place
 from common.plan_rules import known_world
 from common.topic import Topic
-from common.viewpoints import Viewpoints, viewpoints_of
-from common.whereabouts import likelihood
+from common.viewpoints import Mask, Viewpoints, viewpoints_of
+from common.whereabouts import likelihood, points_at
 from services.brain.config import BrainConfig
 from services.brain.home.keeper import HouseholdKeeper
 from services.brain.home.sighting_log import SightingLog
@@ -84,6 +87,16 @@ class Context:
     def likelihood(self, item: str) -> Array:
         """How likely an item is at each of the viewpoints' points (p,), by what was seen over the days."""
         return likelihood(item, self.io.household, self.sightings.rows, self.sightings.date, self.viewpoints)
+
+    def told_points(self, item: str) -> Mask:
+        """Which of the viewpoints' points (p,) are where the person said that the item is."""
+        home, steps = self.io.household, self.mission.planning.steps
+        place, _ = take_place(normalise(self.mission.search.chosen.get(item, item)), home)
+        gone = (
+            a.target for a, b in pairwise(steps) if a.action == "navigate" and b.action == "find" and b.object == item
+        )
+        place = place.removesuffix(f" {FLOOR}") or place_named(normalise(next(gone, "")), home)
+        return points_at(place, home, self.viewpoints)
 
     @property
     def objects(self) -> list[m.WorldObject]:

@@ -93,14 +93,14 @@ class MoveToViewpoint(GoAndLook):
     def initialise(self) -> None:
         super().initialise()
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
-        looked_from = [*mission.search.visited, pose]
+        looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
         if self._elsewhere:
             likely = ctx.likelihood(self._item)
             self._target = viewpoint_search.elsewhere(
-                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely
+                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told
             )
         else:
-            self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from)
+            self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)
         mission.search.visited = looked_from
         mission.at = ""
 
