@@ -6,6 +6,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import TypeVar
 
 from cli.errors import CliError, port_number
 from cli.link import Link, Watch
@@ -20,8 +21,10 @@ from common.bus.session import NoRouter, open_session
 from common.installation import ROOT
 from common.time.clock import monotonic, sleep
 
+T = TypeVar("T")
 READY_LIMIT = 120.0
-"""Time [s] for all processes to be ready; chosen: far above the 3 to 5 s of a calm machine."""
+"""Time [s] for the next process to be ready; chosen: far above the 3 to 5 s that all take on a calm machine. A busy one
+may take longer for all of them, not for the next."""
 EXTRA = {"camera", "dashboard", *OPTIONAL}  # the brain starts missions without these
 
 
@@ -90,23 +93,21 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
     require_weights(plan, say)
     began = monotonic()
     supervision.start(plan.services, plan.connect, plan.environ, plan.info(), detach)
-    _until(lambda: supervision.pid() is not None, supervision, "the supervisor", began)
+    _until(lambda: supervision.pid() is not None, supervision, "the supervisor")
     if "router" in plan.names:
-        _until(lambda: not port_is_free(plan.port), supervision, "the router", began)
+        _until(lambda: not port_is_free(plan.port), supervision, "the router")
         say(f"  router        {monotonic() - began:4.1f} s  {plan.connect}")
     waiting = {s.name for s in plan.services if s.token}
-    with open_session(plan.connect, plan.namespace, wait=_gone(supervision, began)) as session:
+    with open_session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session:
         link = Link(session, plan.connect)
         while waiting:
-            for name in sorted(waiting & link.alive()):
+            for name in sorted(_until(lambda: waiting & link.alive(), supervision, ", ".join(sorted(waiting)))):
                 waiting.discard(name)
                 say(f"  {name:12}  {monotonic() - began:4.1f} s")
-            _check(supervision, ", ".join(sorted(waiting)), began)
-            sleep(0.03)
         if comes_to_life(plan):
-            _until(lambda: _awake(link), supervision, "the brain's first joint states", began, pause=0.05)
-        page = link.latest(topics.PAGE_STATUS) if "dashboard" in plan.names else None
-        if page is not None:
+            _until(lambda: _awake(link), supervision, "the brain's first joint states", pause=0.05)
+        if "dashboard" in plan.names:
+            page = _until(lambda: link.latest(topics.PAGE_STATUS), supervision, "the page")
             say(f"  page                  {page.url}")
     return monotonic() - began
 
@@ -131,13 +132,16 @@ def _gone(supervision: Supervision, began: float) -> Callable[[float], bool]:
     return wait
 
 
-def _until(done: Callable[[], bool], supervision: Supervision, what: str, began: float, pause: float = 0.03) -> None:
-    while not done():
-        _check(supervision, what, began)
+def _until(probe: Callable[[], T | None], supervision: Supervision, what: str, pause: float = 0.03) -> T:
+    """The first truthy value of `probe`, which is asked again until then."""
+    since = monotonic()
+    while not (value := probe()):
+        _check(supervision, what, since)
         sleep(pause)
+    return value
 
 
-def _check(supervision: Supervision, what: str, began: float) -> None:
+def _check(supervision: Supervision, what: str, since: float) -> None:
     why = supervision.died()
     if why:
         raise CliError(f"the supervisor did not start: {why}")
@@ -146,8 +150,8 @@ def _check(supervision: Supervision, what: str, began: float) -> None:
         for process in supervision.processes():
             if process.state == "failed":
                 raise CliError(failure(supervision, process.name, process.detail))
-    if monotonic() - began > READY_LIMIT:
-        raise CliError(f"not ready after {READY_LIMIT:.0f} s: still waiting for {what}; see `tidybot logs`")
+    if monotonic() - since > READY_LIMIT:
+        raise CliError(f"nothing new for {READY_LIMIT:.0f} s: still waiting for {what}; see `tidybot logs`")
 
 
 def failure(supervision: Supervision, name: str, detail: str) -> str:
