@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.sparse import csgraph, csr_matrix
+from scipy.sparse import csgraph
 
 from common.approach import FOOTPRINT
 from common.floor_plan import Vec2
 from common.geometry import Pose2
+from common.grid_graph import graph_of
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
 from services.mapping.scan import Array
 
@@ -49,6 +50,8 @@ BARRED = 0.25
 """Radius [m] around a position that could not be reached in which no other is tried. Chosen: a footprint's."""
 MOST = 500
 """Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
+NEIGHBOURS = 1
+"""Rows and columns of the longest step of a way [cells]: 8 directions."""
 HOME_COST = 1.0
 """Way that every view costs beside the drive [m]: stopping, turning and looking."""
 
@@ -203,27 +206,11 @@ def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, Array | fl
 
 def _costs(grid: Grid, free: Cells, here: Pose2) -> Array:
     """Way [m] from here to every cell over free ones; inf where there is none."""
-    cost = np.full(grid.shape, np.inf)
-    labels, _ = ndimage.label(free, np.ones((3, 3)))
     rows, columns = np.nonzero(free)
     if not len(rows):
-        return cost
+        return np.full(grid.shape, np.inf)
     cells = grid.points((rows, columns))
     start = int(np.argmin(np.hypot(cells[:, 0] - here[0], cells[:, 1] - here[1])))
-    own = labels == labels[rows[start], columns[start]]
-    rows, columns = np.nonzero(own)
-    number = np.full(grid.shape, -1)
-    number[rows, columns] = np.arange(len(rows))
-    heads, tails, lengths = [], [], []
-    for dr, dc, length in ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2))):
-        other = number[np.minimum(rows + dr, grid.shape[0] - 1), np.clip(columns + dc, 0, grid.shape[1] - 1)]
-        both = other >= 0
-        heads.append(np.nonzero(both)[0])
-        tails.append(other[both])
-        lengths.append(np.full(int(both.sum()), length * RESOLUTION))
-    size = len(rows)
-    graph = csr_matrix((np.concatenate(lengths), (np.concatenate(heads), np.concatenate(tails))), shape=(size, size))
-    cells = grid.points((rows, columns))
-    start = int(np.argmin(np.hypot(cells[:, 0] - here[0], cells[:, 1] - here[1])))
-    cost[rows, columns] = csgraph.dijkstra(graph, directed=False, indices=start)
-    return cost
+    graph = graph_of(free, RESOLUTION, NEIGHBOURS)
+    cost = csgraph.dijkstra(graph, directed=False, indices=rows[start] * grid.shape[1] + columns[start])
+    return np.asarray(cost).reshape(grid.shape)

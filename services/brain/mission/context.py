@@ -3,6 +3,8 @@
 from itertools import pairwise
 from typing import Any
 
+from py_trees.common import Status
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -176,6 +178,11 @@ class Context:
         self.mission.failure = failure
         self.note(failure.stage.lower(), failure.reason, "failed")
         self.io.log.warning("step failed", stage=failure.stage, code=failure.code, detail=failure.detail)
+
+    def fail(self, stage: str, code: str, detail: str = "", spoken: str = "") -> Status:
+        """Keep why a step fails, and let it."""
+        self.record_failure(Failure(stage, code, detail, spoken))
+        return Status.FAILURE
 
     def end_mission(self, outcome: Outcome, reason: str) -> None:
         """End the mission; shown with the next state."""

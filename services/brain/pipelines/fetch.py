@@ -9,7 +9,7 @@ from common.naming.likeness import LEAST
 from services.brain.home.told import edit_told
 from services.brain.language.intent import parse
 from services.brain.mission.context import Context
-from services.brain.mission.mission import Failure, gripper_holds
+from services.brain.mission.mission import gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
 from services.brain.steps.begin import Listen, Ready, Wait
@@ -115,8 +115,7 @@ class ParseCommand(Leaf):
         intent = parse(ctx.mission.command, ctx.io.household)
         ctx.note(f"understood: {intent.kind}", intent.item or intent.reason, "planned")
         if intent.kind == "none":
-            ctx.record_failure(Failure("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason))
-            return Status.FAILURE
+            return ctx.fail("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason)
         ctx.mission.task.kind = "stop" if intent.kind == "cancel" else intent.kind
         ctx.mission.task.item, ctx.mission.task.label = intent.item, intent.label
         if intent.label and ctx.gripper.holding == intent.label:
@@ -132,9 +131,7 @@ class Complete(Leaf):
     def update(self) -> Status:
         ctx, task, done = self.ctx, self.ctx.mission.task, self.ctx.mission.delivery
         if task.kind == "fetch" and not (done.grabbed and done.released and not ctx.gripper.holding):
-            unsure = f"I am not sure that I brought the {task.item}."
-            ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken=unsure))
-            return Status.FAILURE
+            return ctx.fail("COMPLETED", "NO_EVIDENCE", spoken=f"I am not sure that I brought the {task.item}.")
         if not with_care(ctx):
             return Status.FAILURE
         did = {"fetch": "", "tell": "kept what was told"}.get(task.kind, "back at the start")

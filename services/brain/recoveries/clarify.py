@@ -11,13 +11,14 @@ from services.brain.tree.composites import Retry, Sequence
 
 
 def ask_which(ctx: Context, task: Task) -> Behaviour:
-    """Ask until the answer names one of them, at most `max_retry_attempts` times."""
-    ask = Sequence(
-        "ask_which",
-        AskQuestion("which", ctx, lambda: which(ctx)),
-        HearChoice("hear_choice", ctx, task.item),
-        LocateObject("look_for_the_one_meant", ctx, task.item),
-    )
+    """Ask until the answer names one of them, and look for that one."""
+    return asked_which(ctx, task.item, LocateObject("look_for_the_one_meant", ctx, task.item))
+
+
+def asked_which(ctx: Context, item: str, then: Behaviour) -> Behaviour:
+    """Ask which one is meant until `then` succeeds with the answer, at most `max_retry_attempts` times."""
+    question = AskQuestion("which", ctx, lambda: which(ctx))
+    ask = Sequence("ask_which", question, HearChoice("hear_choice", ctx, item), then)
     return Retry("clarify", ctx, ask, ctx.config.max_retry_attempts - 1, again=lambda: not ctx.mission.failed_for_good)
 
 

@@ -4,17 +4,11 @@ and then from other sides."""
 import math
 from collections.abc import Callable, Collection
 from functools import partial
-from typing import Any
 
 from py_trees.behaviour import Behaviour
-from py_trees.common import Status
 
 from common import messages as m
-from common import topics
-from common.geometry import Pose2
-from common.topic import Topic
 from services.brain.mission.context import Context
-from services.brain.mission.mission import Failure
 from services.brain.mission.search import SIDES
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_near, near_possible
@@ -43,40 +37,29 @@ class MoveCloser(GoAndLook):
     One that was looked at is seen from another side.
     """
 
+    NOTHING_LEFT = ("NOT_FOUND", "nothing left to look at from nearer")
+
     def __init__(self, node_id: str, ctx: Context, left: Callable[[Context], list[m.WorldObject]]) -> None:
         super().__init__(node_id, ctx)
         self._left = left
         self._target: m.WorldObject | None = None
-        self._pose: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
         ctx, search = self.ctx, self.ctx.mission.search
-        self._target = self._pose = None
+        self._target = self.view = None
         plan, here = ctx.io.household, ctx.robot_pose
-        while self._pose is None and (left := self._left(ctx)):
+        while self.view is None and (left := self._left(ctx)):
             found = min(left, key=lambda o: len(search.directions(o.position)))
             search.drop(found.label)
             x, y, _ = found.position
             seen_from = search.directions(found.position)
-            self._pose = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
+            self.view = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
             # One that cannot be reached, or has no other side, is not tried again either.
-            angles = [math.atan2(self._pose[1] - y, self._pose[0] - x)] if self._pose else [0.0] * SIDES
+            angles = [math.atan2(self.view[1] - y, self.view[0] - x)] if self.view else [0.0] * SIDES
             search.looked_near(found.position, angles)
             self._target = found
         ctx.mission.at = ""
-
-    def update(self) -> Status:
-        if self._pose is None:
-            self.feedback_message = "nothing left to look at from nearer"
-            self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", self.feedback_message, self.spoken()))
-            return Status.FAILURE
-        return super().update()
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        assert self._pose is not None
-        x, y, theta = self._pose
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
 
     def step(self) -> str:
         return f"look closer at {self._target.label}" if self._target is not None else "look closer"

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.topic import Topic
 from services.brain.language.choosing import chosen
-from services.brain.language.dialogue import answered, corrected, reply
+from services.brain.language.dialogue import Reply, answered, corrected, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
@@ -66,6 +66,15 @@ class HearAnswer(SendGoal):
             self.ctx.send_only(self.channel, topics.SPEECH_GOAL, "cancel")
         return self.succeed(Result("ok", message=given))
 
+    def succeed(self, result: Result) -> Status:
+        assert isinstance(result.message, m.SpeechResult)
+        text = result.message.text
+        return self.heard(*reply(text), text)
+
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        """What becomes of an answer, by its kind and what it says besides."""
+        raise NotImplementedError
+
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
 
@@ -76,8 +85,7 @@ class HearAnswer(SendGoal):
 
     def refuse(self, code: str, detail: str, spoken: str) -> Status:
         """Speech has worked, but what was heard is not the answer."""
-        self.ctx.record_failure(Failure("CONFIRMING", code, detail, spoken))
-        return Status.FAILURE
+        return self.ctx.fail("CONFIRMING", code, detail, spoken)
 
 
 class HearConfirmation(HearAnswer):
@@ -89,11 +97,9 @@ class HearConfirmation(HearAnswer):
     def spoken(self) -> str:
         return "I did not hear an answer."
 
-    def succeed(self, result: Result) -> Status:
-        mission, heard = self.ctx.mission, result.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
-        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        mission = self.ctx.mission
+        self.ctx.note(f"reply: {kind}", text, "heard")
         self.feedback_message = kind
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
@@ -120,21 +126,18 @@ class HearChoice(HearAnswer):
     def spoken(self) -> str:
         return f"I do not know which {self._item} you mean."
 
-    def succeed(self, result: Result) -> Status:
-        mission, heard = self.ctx.mission, result.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, _ = reply(heard.text)
-        known = self.ctx.objects
-        label = None if kind == "cancel" else chosen(heard.text, mission.search.options, known, self.ctx.io.household)
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        mission, known = self.ctx.mission, self.ctx.objects
+        label = None if kind == "cancel" else chosen(text, mission.search.options, known, self.ctx.io.household)
         if label is None and kind in ("no", "cancel"):
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
         if label is None:
-            return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
+            return self.refuse("NOT_CONFIRMED", text, self.spoken())
         mission.search.chosen[self._item] = label
         named = next((o for o in known if o.label == label), None)
         if named is not None and named.id:
             mission.search.confirmed[self._item] = named.id
-        self.ctx.note(f"meant: {label}", heard.text)
+        self.ctx.note(f"meant: {label}", text)
         return Status.SUCCESS
 
     def fail_with(self, failure: Failure) -> Status:
@@ -152,14 +155,12 @@ class HearPerson(HearAnswer):
     def spoken(self) -> str:
         return "I did not hear an answer."
 
-    def succeed(self, result: Result) -> Status:
-        heard = result.message
-        assert isinstance(heard, m.SpeechResult)
-        if reply(heard.text)[0] == "cancel":
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right.")
-        self.ctx.note(f"answered: {heard.text}", self.ctx.mission.command, "heard")
-        self.ctx.end_mission("delivered", heard.text)
-        self.ctx.show_state("COMPLETED", detail=heard.text)
+        self.ctx.note(f"answered: {text}", self.ctx.mission.command, "heard")
+        self.ctx.end_mission("delivered", text)
+        self.ctx.show_state("COMPLETED", detail=text)
         return Status.SUCCESS
 
 
@@ -172,11 +173,9 @@ class HearMeaning(HearAnswer):
     def spoken(self) -> str:
         return "I did not hear whether you meant that, so I do nothing."
 
-    def succeed(self, result: Result) -> Status:
-        mission, heard = self.ctx.mission, result.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
-        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        mission = self.ctx.mission
+        self.ctx.note(f"reply: {kind}", text, "heard")
         planning, mission.failure = mission.planning, None
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")

@@ -8,7 +8,6 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.geometry import Pose2
 from common.kinds import kind_of
 from common.language.normalise import indefinite
 from common.naming.likeness import describes
@@ -19,7 +18,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.search import SIDES
 from services.brain.steps.leaf import Leaf, SendGoal
-from services.brain.steps.motion import GoAndLook, Navigate
+from services.brain.steps.motion import GoAndLook, Navigate, drive_to
 from services.brain.world import viewpoint_search
 from services.brain.world.placement import TIPPED, kind_meant
 from services.brain.world.reading_poses import FARTHEST, shows_another_side
@@ -85,10 +84,11 @@ class LocateObject(SendGoal):
 class MoveToViewpoint(GoAndLook):
     """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
 
+    NOTHING_LEFT = ("NOTHING_NEW", "everything has been looked at")
+
     def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "", item: str = "") -> None:
         super().__init__(node_id, ctx, name)
         self._elsewhere, self._item = elsewhere, item
-        self._target: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
@@ -96,36 +96,24 @@ class MoveToViewpoint(GoAndLook):
         looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
         if self._elsewhere:
             likely = ctx.likelihood(self._item)
-            self._target = viewpoint_search.elsewhere(
+            self.view = viewpoint_search.elsewhere(
                 ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told
             )
         else:
-            self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)
+            self.view = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)
         mission.search.visited = looked_from
         mission.at = ""
 
-    def update(self) -> Status:
-        if self._target is None:
-            self.feedback_message = "everything has been looked at"
-            self.ctx.record_failure(Failure("GROUNDING", "NOTHING_NEW", self.feedback_message, self.spoken()))
-            return Status.FAILURE
-        return super().update()
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        assert self._target is not None
-        x, y, theta = self._target
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
-
     def succeed(self, result: Result) -> Status:
-        assert self._target is not None
+        assert self.view is not None
         search = self.ctx.mission.search
-        search.visited = [*search.visited, self._target]
+        search.visited = [*search.visited, self.view]
         return super().succeed(result)
 
     def fail_with(self, failure: Failure) -> Status:
-        assert self._target is not None
+        assert self.view is not None
         search = self.ctx.mission.search
-        search.unreached = [*search.unreached, self._target]
+        search.unreached = [*search.unreached, self.view]
         return super().fail_with(failure)
 
     def step(self) -> str:
@@ -146,7 +134,7 @@ class TurnOnTheSpot(SendGoal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         x, y, theta = self.ctx.robot_pose
         turned = math.remainder(theta + self._angle, 2 * math.pi)
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=turned)
+        return drive_to(goal_id, (x, y, turned))
 
     def step(self) -> str:
         return "look around"
@@ -163,9 +151,7 @@ class ReportNotFound(Leaf):
         self._item, self._tries = item, tries
 
     def update(self) -> Status:
-        detail = f"not seen in {self._tries} search attempts"
-        self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", detail, self._spoken()))
-        return Status.FAILURE
+        return self.ctx.fail("GROUNDING", "NOT_FOUND", f"not seen in {self._tries} search attempts", self._spoken())
 
     def _spoken(self) -> str:
         if label_of(self.ctx, self._item) in self.ctx.mission.delivery.lost:
@@ -201,9 +187,9 @@ class Approach(Navigate):
             return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
         if told := ctx.mission.search.stances.get(ref.label):
             # Whoever moves the arm has computed where: no other stance will do.
-            return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=told[0], y=told[1], theta=told[2])
-        x, y, theta = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
+            return drive_to(goal_id, told)
+        pose = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
+        return drive_to(goal_id, pose, ref)
 
     def fail_with(self, failure: Failure) -> Status:
         if self.ctx.mission.search.stances.pop(label_of(self.ctx, self._item), None):
@@ -229,9 +215,7 @@ class WithinReach(Leaf):
         if height <= kind.highest:
             return Status.SUCCESS
         detail = f"it stands at {height:.2f} m, {indefinite(kind.name)} is taken from {kind.highest:.2f} m at the most"
-        spoken = f"The {self._item} stands too high for me."
-        ctx.record_failure(Failure("GRABBING", "OUT_OF_REACH", detail, spoken))
-        return Status.FAILURE
+        return ctx.fail("GRABBING", "OUT_OF_REACH", detail, f"The {self._item} stands too high for me.")
 
 
 def label_of(ctx: Context, item: str) -> str:

@@ -10,8 +10,7 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.robot.grip import OPEN_PLAY, OPENING, Grip, grip_of
-from services.brain.language.dialogue import reply
-from services.brain.mission.channel import Result
+from services.brain.language.dialogue import Reply
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.steps.ask import AskQuestion, HearAnswer
@@ -57,10 +56,7 @@ class MoveGripper(Leaf):
             return Status.RUNNING
         where = "joint_states tell of no gripper" if grip is None else f"the fingers are {grip[0] * 1000:.0f} mm apart"
         verb = "close" if self._closed else "open"
-        ctx.record_failure(
-            Failure(ctx.state, "STUCK", f"{where} after {PATIENCE:.0f} s", f"I could not {verb} my hand.")
-        )
-        return Status.FAILURE
+        return ctx.fail(ctx.state, "STUCK", f"{where} after {PATIENCE:.0f} s", f"I could not {verb} my hand.")
 
     def _there(self, grip: Grip) -> bool:
         width = grip.width
@@ -88,11 +84,8 @@ class HearPermission(HearAnswer):
     def spoken(self) -> str:
         return ""
 
-    def succeed(self, result: Result) -> Status:
-        heard = result.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, _ = reply(heard.text)
-        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        self.ctx.note(f"reply: {kind}", text, "heard")
         return Status.SUCCESS if kind == "yes" else Status.FAILURE
 
     def fail_with(self, failure: Failure) -> Status:

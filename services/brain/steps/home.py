@@ -8,7 +8,6 @@ from py_trees.common import Status
 from common import messages as m
 from common.tidy_rule import rule_about
 from services.brain.mission.context import Context
-from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import Leaf, Say
 from services.brain.tree.composites import Sequence
 
@@ -67,5 +66,4 @@ class EditHousehold(Leaf):
             return Status.SUCCESS
         self.feedback_message = result.detail
         spoken = f"I did not keep that: {result.detail}."
-        ctx.record_failure(Failure("GROUNDING", result.code or "FAILED", result.detail, spoken))
-        return Status.FAILURE
+        return ctx.fail("GROUNDING", result.code or "FAILED", result.detail, spoken)

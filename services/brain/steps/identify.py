@@ -12,8 +12,7 @@ from common.language.normalise import indefinite, without_determiners
 from common.language.noun_phrase import WHICH, related
 from common.naming.likeness import LEAST, PLAIN, describes, likeness
 from common.naming.names import ANYTHING, unnumbered
-from services.brain.language.dialogue import reply
-from services.brain.mission.channel import Result
+from services.brain.language.dialogue import Reply
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.search import SAME_PLACE
@@ -65,12 +64,10 @@ class HearIdentity(HearAnswer):
     def spoken(self) -> str:
         return f"I could not find the {self._item}."
 
-    def succeed(self, result: Result) -> Status:
-        search, heard = self.ctx.mission.search, result.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
+    def heard(self, kind: Reply, rest: str, text: str) -> Status:
+        search = self.ctx.mission.search
         about, search.about = search.about, None
-        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+        self.ctx.note(f"reply: {kind}", text, "heard")
         self.feedback_message = kind
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
@@ -133,8 +130,7 @@ class StillMeant(Leaf):
             return Status.SUCCESS
         ctx.mission.search.perhaps = rated(ctx, item, now)
         detail = f"from near it is {indefinite(now.label)}, and that not plainly"
-        ctx.record_failure(Failure("GRABBING", NOT_PLAIN, detail, f"I am not sure that it is the {item}."))
-        return Status.FAILURE
+        return ctx.fail("GRABBING", NOT_PLAIN, detail, f"I am not sure that it is the {item}.")
 
 
 def not_plain(ctx: Context) -> bool:

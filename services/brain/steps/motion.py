@@ -8,6 +8,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.geometry import Pose2
 from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -25,6 +26,12 @@ LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 """Manipulation's codes for a hand that is empty and should have held something."""
 BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
 """Why no grasp can hold an object, in words, by manipulation's code."""
+
+
+def drive_to(goal_id: str, pose: Pose2, about: m.ObjectRef | None = None) -> tuple[Topic[Any], m.Message]:
+    """The goal of standing at a pose [map]; `about`: the object before which it is."""
+    x, y, theta = pose
+    return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=about)
 
 
 class Navigate(SendGoal):
@@ -62,7 +69,7 @@ class Navigate(SendGoal):
         if self._place and ctx.config.drive_by == "poses":
             pose = place_pose(ctx.io.household, self._place, ctx.robot_pose)
             if pose is not None:
-                return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=pose[0], y=pose[1], theta=pose[2])
+                return drive_to(goal_id, pose)
         return topics.NAVIGATION_GOAL, m.NavigationGoal(goal=self._text(), id=goal_id)
 
     def spoken(self) -> str:
@@ -86,18 +93,31 @@ class Navigate(SendGoal):
 
 
 class GoAndLook(SendGoal):
-    """A drive to one of several views: where it is held up for `view_patience`, another one is taken first."""
+    """A drive to one of several views: where it is held up for `view_patience`, another one is taken first.
+
+    A subclass sets the `view` [map] as it begins; None: there is none, with the code and words of `NOTHING_LEFT`.
+    """
+
+    NOTHING_LEFT: tuple[str, str]
 
     def __init__(self, node_id: str, ctx: Context, name: str = "") -> None:
         limit = ctx.config.navigation_timeout
         super().__init__(node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=limit, name=name)
         self._held_up = self._at = 0.0
+        self.view: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
         self._held_up, self._at = 0.0, self.ctx.now
 
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        assert self.view is not None
+        return drive_to(goal_id, self.view)
+
     def update(self) -> Status:
+        if self.view is None:
+            code, self.feedback_message = self.NOTHING_LEFT
+            return self.ctx.fail("GROUNDING", code, self.feedback_message, self.spoken())
         ctx, told = self.ctx, self.ctx.io.latest(topics.NAVIGATION_FEEDBACK)
         if told is not None and told.goal_id == self.channel.goal_id and told.code in HELD_UP:
             self._held_up += ctx.now - self._at

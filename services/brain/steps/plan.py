@@ -99,17 +99,11 @@ class CompleteWithEvidence(Leaf):
         lets_go = any(s.action in ("place", "release") for s in steps)
         grasps = any(s.action == "grasp" for s in steps)
         if (grasps and not done.grabbed) or (lets_go and not done.released):
-            ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
-            return Status.FAILURE
+            return ctx.fail("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked.")
         if not with_care(ctx):
             return Status.FAILURE
-        detail = "; ".join(
-            [
-                self._summary(),
-                *done.checked,
-                *(f"{item}: not checked" for item in done.unchecked),
-            ]
-        )
+        unchecked = (f"{item}: not checked" for item in done.unchecked)
+        detail = "; ".join([self._summary(), *done.checked, *unchecked])
         ctx.end_mission("delivered", detail)
         ctx.show_state("COMPLETED", detail=detail)
         return Status.SUCCESS

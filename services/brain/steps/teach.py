@@ -11,11 +11,10 @@ from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
-from services.brain.recoveries.clarify import several_match
+from services.brain.recoveries.clarify import asked_which, several_match
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
-from services.brain.steps.ask import AskQuestion, HearChoice, which
 from services.brain.steps.leaf import Say, SendGoal
-from services.brain.tree.composites import Retry, Sequence
+from services.brain.tree.composites import Sequence
 
 
 def teach(ctx: Context, step: m.PlanStep, node_id: str, name: str) -> Sequence:
@@ -31,14 +30,9 @@ def forget(ctx: Context, step: m.PlanStep, node_id: str, name: str) -> Sequence:
 
 
 def ask_which(ctx: Context, task: Task) -> Behaviour:
-    """Ask until the answer names one of the things, at most `max_retry_attempts` times, and teach that one."""
-    ask = Sequence(
-        "ask_which",
-        AskQuestion("which", ctx, lambda: which(ctx)),
-        HearChoice("hear_choice", ctx, task.item),
-        TeachName("teach_the_one_meant", ctx, m.PlanStep(action="teach", text=task.item)),
-    )
-    return Retry("clarify", ctx, ask, ctx.config.max_retry_attempts - 1, again=lambda: not ctx.mission.failed_for_good)
+    """Ask until the answer names one of the things, and teach that one."""
+    teach_it = TeachName("teach_the_one_meant", ctx, m.PlanStep(action="teach", text=task.item))
+    return asked_which(ctx, task.item, teach_it)
 
 
 def done(step: m.PlanStep) -> str:

@@ -15,7 +15,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.find import object_in_map
 from services.brain.steps.leaf import Leaf, SendGoal, Settle
-from services.brain.steps.motion import Release
+from services.brain.steps.motion import Release, drive_to
 from services.brain.tree.composites import Condition, Retry, Sequence
 from services.brain.world.neighbours import knocked_over
 from services.brain.world.placement import Finding, Rest, judge_absence, judge_placement
@@ -103,7 +103,7 @@ class TurnAside(SendGoal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         self.ctx.mission.at = ""
         x, y, theta = self.ctx.robot_pose
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta + ASIDE)
+        return drive_to(goal_id, (x, y, theta + ASIDE))
 
     def fail_with(self, failure: Failure) -> Status:
         self.feedback_message = f"not turned: {failure.code}"
@@ -155,8 +155,7 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     if finding.fault == "NOT_SEEN" and taken is not None:
         mission.delivery.absent[label] = taken, ctx.gripper.put_down.get(label, ctx.now)
     spoken = f"I did not put down the {label} well: {finding.words}."
-    ctx.record_failure(Failure("RELEASING", finding.fault, finding.evidence, spoken))
-    return Status.FAILURE
+    return ctx.fail("RELEASING", finding.fault, finding.evidence, spoken)
 
 
 def with_care(ctx: Context) -> bool:
