@@ -12,7 +12,7 @@ from common.language.normalise import normalise
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.journal.open import open_journal
-from services.brain.journal.queries import MissionQueries
+from services.brain.journal.pictures import MissionQueries
 from services.brain.mission.asides import Asides
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds

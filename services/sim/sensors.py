@@ -3,18 +3,40 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2
+from common.geometry import IDENTITY_POSE, Pose2, compose, inverse
 from common.robot.model import ARM, BASE
 from services.sim.body import Body
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
-from services.sim.odometry import WheelOdometry
-from services.sim.proprioception import Proprioception
 
+Array = NDArray[np.float64]
+
+ENCODER_NOISE, ENCODER_ZERO = 2e-4, 5e-4
+"""Standard deviation of an angle and most that a joint's zero is off [rad]; chosen: .01 and .03 degrees, a few tenths
+of a millimetre at the hand."""
+RATE_NOISE = 2e-3
+"""Standard deviation of a joint's speed [rad/s]; chosen: the difference of two angles over a filter of .15 s."""
+TORQUE_NOISE = 0.005
+"""Standard deviation of an effort, as a share of its largest; chosen: .5 and .26 N m of the arm's joints."""
+FINGER_NOISE = 0.4
+"""Standard deviation of a finger's force [N], from the current of its motor, which the 2F-85 tells in steps of 10 mA
+(instruction manual, register gCU); chosen: a step and a half."""
+PLAY, PLAY_LIMIT = 0.0002, 0.00035
+"""Standard deviation and most of what the linkage's play does to the width [m]: with the steps in which the motor's
+travel is told, .5 mm in all."""
+PLAY_TRAVEL = 0.002
+"""Travel of the pads after which they lie in their play as if never seen before [m]; chosen."""
+BLOCK = 500
+"""Readings whose errors are drawn at once [count]: one by one they would cost more than the reading."""
+_TURN_RADIUS = 0.2
+"""Distance of the wheels from the base's middle [m]: what turning on the spot rolls."""
+SLIP = 0.1
+"""Share of the way that the wheels miss while they slide (chosen: what an anti-lock brake of a car aims at)."""
 _NAMES = [*BASE, *ARM, "gripper"]
 
 
@@ -67,3 +89,73 @@ class Sensors:
             t=t, ranges=ranges.tobytes(), angle_increment=2 * math.pi / RAYS, range_min=RANGE_MIN, range_max=RANGE_MAX
         )
         self._io.publish(topics.SCAN, scan)
+
+
+# --- wheel odometry: the true motion, integrated with a constant slip, a constant veer and random noise
+class WheelOdometry:
+    """Has `believed` the base at `start`; its errors are those of the seed. All three parameters 0: exact."""
+
+    def __init__(self, start: Pose2, config: SimConfig, seed: int) -> None:
+        rng = self._rng = np.random.default_rng([seed, 11])
+        self._true, self.believed = start, start
+        self._noise = config.odometry_noise
+        self._scale = 1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)
+        self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
+        self._frame = IDENTITY_POSE
+        self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
+
+    def resume(self, true: Pose2, believed: Pose2) -> None:
+        """Go on from a known pose with what was believed there."""
+        self._true, self.believed = true, believed
+        self._frame = compose(believed, inverse(true))
+
+    def update(self, true: Pose2, sliding: bool = False) -> Pose2:
+        """The believed pose after the robot has moved to `true`, on wheels at the end of their grip if `sliding`."""
+        if self._exact:
+            self.believed = compose(self._frame, true)
+            return self.believed
+        dx, dy, turn = compose(inverse(self._true), true)
+        self._true = true
+        moved = math.hypot(dx, dy) + _TURN_RADIUS * abs(turn)
+        if moved < 1e-7:
+            return self.believed
+        ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()
+        a, b, c = (self._scale * (1.0 - SLIP * sliding)).tolist()
+        step = dx * a + ex, dy * b + ey, turn * c + self._veer * moved + eturn
+        self.believed = compose(self.believed, step)
+        return self.believed
+
+
+# --- what the arm and the hand feel of themselves: encoders, motor currents and the gripper's width, with their error
+class Proprioception:
+    """The errors of one robot, drawn from `seed`; `efforts` (n,) is the largest effort of each joint."""
+
+    def __init__(self, seed: int, efforts: Array) -> None:
+        rng = self._rng = np.random.default_rng([seed, 13])
+        count = len(efforts)
+        zero: Array = rng.uniform(-ENCODER_ZERO, ENCODER_ZERO, count)
+        self._mean = np.concatenate((zero, np.zeros(2 * count + 1)))
+        alike = np.full(count, ENCODER_NOISE), np.full(count, RATE_NOISE)
+        self._deviation = np.concatenate((*alike, TORQUE_NOISE * efforts, [FINGER_NOISE]))
+        self._play, self._width = float(rng.normal(0.0, PLAY)), 0.0
+        self._errors, self._at = np.empty((0, len(self._mean))), 0
+
+    def read(self, true: Array) -> Array:
+        """What is measured (3 n + 1,) of angles [rad], speeds [rad/s], torques [N m] and a finger's force [N]."""
+        if self._at == len(self._errors):
+            drawn = self._rng.standard_normal((BLOCK, len(self._mean)))
+            self._errors, self._at = self._mean + self._deviation * drawn, 0
+        self._at += 1
+        return np.asarray(true + self._errors[self._at - 1])
+
+    def width(self, told: float) -> float:
+        """The width [m] that the gripper tells, from the one that its motor's travel stands for.
+
+        The play of the linkage changes only while the pads move, so a thing that is held keeps its width.
+        """
+        travel, self._width = abs(told - self._width), told
+        if travel:
+            keeps = math.exp(-travel / PLAY_TRAVEL)
+            fresh = float(self._rng.normal(0.0, PLAY))
+            self._play = keeps * self._play + math.sqrt(1.0 - keeps * keeps) * fresh
+        return max(0.0, told + max(-PLAY_LIMIT, min(PLAY_LIMIT, self._play)))

@@ -1,8 +1,10 @@
 """The simulation: owns MuJoCo and robot time, plays the robot's drivers and sensors."""
 
 import math
+import os
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import mujoco
@@ -25,7 +27,6 @@ from services.sim.obstacles import chosen
 from services.sim.physics import Physics
 from services.sim.sensors import Sensors
 from services.sim.unit import Unit
-from services.sim.viewer import Viewer
 
 CHECKPOINT_TICKS = 50
 """Ticks [10 ms] between two saves of the world: a restart loses half a second."""
@@ -201,3 +202,22 @@ def _speed(text: str) -> float | None:
     if not 0 < factor < math.inf:
         raise StartError(f"sim.speed = {text!r}: expected realtime, max or a factor such as 4")
     return factor
+
+
+# --- an optional window on the simulation
+class Viewer:
+    """MuJoCo's passive viewer; needs a display."""
+
+    def __init__(self, physics: Physics) -> None:
+        if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+            raise StartError("sim.viewer needs a display (DISPLAY is not set); run without --viewer")
+        import mujoco.viewer
+
+        self._window: Any = mujoco.viewer.launch_passive(physics.model, physics.data)
+
+    def sync(self) -> None:
+        if self._window.is_running():
+            self._window.sync()
+
+    def close(self) -> None:
+        self._window.close()

@@ -1,20 +1,25 @@
 """One robot of the simulation on its bus: its drivers, sensors and battery, and what they publish."""
 
+import math
 from typing import Any
+
+import mujoco
+import numpy as np
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.messages import CameraMount
 from common.time.lockstep import DT
 from services.sim.battery import Battery
 from services.sim.body import Array
 from services.sim.config import SimConfig
 from services.sim.drivers import Drivers
-from services.sim.mounts import head_camera
 from services.sim.physics import Physics
 from services.sim.sensors import Sensors
 
+BASE = "base"
 SCAN_TICKS, STATE_TICKS, BATTERY_TICKS = 10, 5, 100
 """Periods [ticks of 10 ms] of lidar, `sim/state` and battery."""
 
@@ -83,3 +88,24 @@ class Unit:
             io.publish(topics.SIM_STATE, state)
             if touches := body.contacts.take():
                 io.publish(topics.SIM_CONTACTS, m.SimContacts(t=t, epoch=self._epoch, touches=touches))
+
+
+# --- where the robot's cameras sit, for its description
+def head_camera(model: Any) -> CameraMount | None:
+    """The mount of camera `head`, read from a compiled model; None when the base carries no such camera."""
+    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, "head")
+    if number < 0 or model.body(int(model.cam_bodyid[number])).name != BASE:
+        return None
+    turn = np.empty(9)
+    mujoco.mju_quat2Mat(turn, model.cam_quat[number])
+    # A camera of MuJoCo looks along its own -z.
+    forward, left, up = (float(v) for v in -turn.reshape(3, 3)[:, 2])
+    x, y, z = (float(v) for v in model.cam_pos[number])
+    return CameraMount(
+        x=x,
+        y=y,
+        z=z,
+        yaw=math.atan2(left, forward),
+        pitch=-math.asin(max(-1.0, min(1.0, up))),
+        fovy=math.radians(float(model.cam_fovy[number])),
+    )

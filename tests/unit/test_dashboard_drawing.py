@@ -7,7 +7,7 @@ import pytest
 from common.household import load_household
 from common.scene import load_scene
 from services.dashboard.scene.drawing import Drawing, Mesh, draw, posture
-from services.dashboard.scene.shapes import COLOURS, fallback
+from services.dashboard.scene.view import COLOURS, fallback
 from services.sim.physics import Physics
 
 

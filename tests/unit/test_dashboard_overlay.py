@@ -5,7 +5,7 @@ import pytest
 
 from common import messages as m
 from common.geometry import matrix_quat
-from services.dashboard.scene.overlay import boxes, marked
+from services.dashboard.panels.cameras import boxes, marked
 
 # A camera 1 m above the base's origin that looks along its x axis.
 AHEAD = matrix_quat(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]))

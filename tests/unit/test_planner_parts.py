@@ -10,7 +10,7 @@ from common.messages import KnownWorld, PlanStep
 from services.planner.choice_points import MAX_RUNS, ChoicePoints, every
 from services.planner.config import PlannerConfig
 from services.planner.grammar.vocabulary import Vocabulary
-from services.planner.language_model.llm_plan import Impossible, checked
+from services.planner.language_model.prompt import Impossible, checked
 from services.planner.world import believed
 
 SCENE = load_household("apartment")

@@ -15,8 +15,8 @@ from common.scene import Obstacle, load_scene
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.obstacles import DISTANCE, Walker, chosen
-from services.sim.odometry import WheelOdometry
 from services.sim.pedestrians import Pedestrian
+from services.sim.sensors import WheelOdometry
 from tests.simulation import Simulation
 
 APARTMENT = load_scene("apartment")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from services.sim.fingers import COUNTS
-from services.sim.proprioception import ENCODER_ZERO, Proprioception
+from services.sim.body import COUNTS
+from services.sim.sensors import ENCODER_ZERO, Proprioception
 
 EFFORTS = np.array([105.0] * 4 + [52.0] * 3)
 

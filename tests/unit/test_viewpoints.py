@@ -14,7 +14,7 @@ from common.household import Household, load_household
 from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
 from common.whereabouts import LEAST, spread
 from services.brain.world import viewpoint_search
-from services.sim.mounts import head_camera
+from services.sim.unit import head_camera
 
 SCENE = load_household("apartment")
 HOME = (0.0, 0.0, 0.0)

@@ -5,7 +5,10 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
+
 from common.files import atomic_file
+from services.brain.journal.records import Journal
 
 KEPT = 200
 """Files: at some 10 KB each 2 MB, a day of missions."""
@@ -48,3 +51,27 @@ class Pictures:
         with contextlib.suppress(OSError):
             return (self._directory / name).read_bytes()
         return None
+
+
+# --- answers what people's tools ask about missions (`brain/missions`)
+class MissionQueries:
+    """The missions of a journal, and the pictures that they rest on."""
+
+    def __init__(self, journal: Journal, pictures: Pictures) -> None:
+        self._journal, self._pictures = journal, pictures
+
+    def answer(self, payload: bytes) -> bytes:
+        """All missions, the timeline of the one whose id is asked for, or a picture of it by name (base64), as JSON."""
+        wanted = payload.decode().strip()
+        if wanted.startswith("{"):
+            asked = msgspec.json.decode(payload)
+            if picture := asked.get("picture"):
+                return msgspec.json.encode(self._pictures.load(str(picture)))
+            wanted = str(asked.get("id", ""))
+        missions = self._journal.missions()
+        if wanted == "last":
+            wanted = missions[-1].id if missions else wanted
+        if wanted:
+            return msgspec.json.encode(self._journal.mission(wanted))
+        rows = [{k: v for k, v in msgspec.to_builtins(record).items() if k != "entries"} for record in missions]
+        return msgspec.json.encode(rows)

@@ -16,16 +16,17 @@ from typing import Any
 import msgspec
 import numpy as np
 import viser
-from aiohttp import ClientSession, web
+from aiohttp import ClientSession, WSMsgType, web
 
 from common.security import web_access as access
 from common.security.web_middleware import access_middleware
 from services.dashboard.config import DashboardConfig
 from services.dashboard.web.events import Asked, Click, Event
-from services.dashboard.web.listener import PageError, guarded, listen
-from services.dashboard.web.view_proxy import proxied
+from services.dashboard.web.listener import KEY_HEADER, PageError, guarded, listen
 from services.dashboard.web.visitors import MAX_CHUNK, Visitors
 
+VIEW_LIMIT = 8 * 2**20
+"""Bytes of a message from a visitor's 3-D view; chosen: far above what a camera's pose or a click takes."""
 PAGE = Path(__file__).parent / "page"
 VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
 OPENING, CLOSING, ANSWER = 60.0, 2.0, 8.0
@@ -150,3 +151,32 @@ class Web:
 def _settle(future: "asyncio.Future[str]", page: str) -> None:
     if not future.done():
         future.set_result(page)
+
+
+# --- viser's stream, passed on from its own server on a port that answers nobody else
+async def proxied(request: web.Request, session: ClientSession, port: int, secret: str) -> web.StreamResponse:
+    """A visitor's WebSocket to viser's at `port`, until either closes."""
+    wanted = [p.strip() for p in request.headers.get("Sec-WebSocket-Protocol", "").split(",") if p.strip()]
+    outer = web.WebSocketResponse(protocols=wanted, heartbeat=20.0, compress=False, max_msg_size=VIEW_LIMIT)
+    await outer.prepare(request)
+    async with session.ws_connect(
+        f"ws://127.0.0.1:{port}/", protocols=wanted, headers={KEY_HEADER: secret}, max_msg_size=0, compress=0
+    ) as inner:
+        ways = [asyncio.ensure_future(_pass(outer, inner)), asyncio.ensure_future(_pass(inner, outer))]
+        try:
+            await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for way in ways:
+                way.cancel()
+            await asyncio.gather(*ways, return_exceptions=True)
+    await outer.close()
+    return outer
+
+
+async def _pass(source: Any, sink: Any) -> None:
+    """Frames from one WebSocket to another until either closes."""
+    async for message in source:
+        if message.type is WSMsgType.BINARY:
+            await sink.send_bytes(message.data)
+        elif message.type is WSMsgType.TEXT:
+            await sink.send_str(message.data)

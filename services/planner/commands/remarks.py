@@ -1,6 +1,11 @@
 """What is said beside a command: a reason, a thing or a place that is spoken of next. Pure."""
 
+from common.language.normalise import without_determiners
 from common.language.pattern import Slots
+from common.messages import PlanStep
+from common.naming.names import normalise
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.senses import LONGEST_NAME
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import speak_of
@@ -35,3 +40,44 @@ def untidy(builder: PlanBuilder, slots: Slots) -> None:
 def again(builder: PlanBuilder, slots: Slots) -> None:
     """What was done before is worked out from its words, before any clause is read."""
     raise Refusal("I have done nothing yet that I could do again")
+
+
+# --- names of things: what they are taught for, and which are forgotten
+def teach(builder: PlanBuilder, slots: Slots) -> None:
+    """The thing that is named, or "this", gets a name. Which one that is perception decides, which sees it."""
+    thing = " ".join(without_determiners(slots.get("thing", ())))
+    phrase = read(slots["thing"], builder.vocabulary) if thing else None
+    if thing and (not isinstance(phrase, Phrase) or phrase.sense.new):
+        raise Lost(f"I know no {thing} that could have a name")
+    builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
+
+
+def teach_owned(builder: PlanBuilder, slots: Slots) -> None:
+    """`that's grandma's cup` of what the hand holds or has just brought; of nothing else it tells a name."""
+    owned = any(word.endswith("'s") for word in slots["words"])
+    if not owned or (builder.world.held is None and builder.world.history.last is None):
+        raise Lost(f"{NOT_UNDERSTOOD} what {' '.join(slots['words'])!r} has to do with it")
+    teach(builder, slots)
+
+
+def forget(builder: PlanBuilder, slots: Slots) -> None:
+    """A name that was taught is forgotten, of a thing or of a place."""
+    words = " ".join(without_determiners(slots["words"]))
+    if any(n.name == normalise(words) for n in builder.world.edits.names):
+        builder.steps.append(PlanStep(action="forget", target="place", text=words))
+        return
+    builder.steps.append(PlanStep(action="forget", text=_name(builder, slots)))
+
+
+def _name(builder: PlanBuilder, slots: Slots) -> str:
+    """The name as it is to be kept.
+
+    Raises:
+        Refusal: it is a place, or a word that says how a thing is ("the ball is my favourite").
+    """
+    words = without_determiners(slots["words"])
+    if len(words) > LONGEST_NAME:
+        raise Lost(f"{' '.join(words)} is too long a name")
+    if not words or builder.vocabulary.spot(words) or set(words) <= set(builder.world.household.words.qualities):
+        raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
+    return " ".join(words)

@@ -16,7 +16,6 @@ from services.planner.commands import (
     home,
     looking,
     remarks,
-    teaching,
     tidying,
 )
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
@@ -51,9 +50,9 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "fetch_named": bringing.fetch_named,
     "pick_up": hand.pick_up,
     "find": going.find,
-    "teach": teaching.teach,
-    "teach_owned": teaching.teach_owned,
-    "forget": teaching.forget,
+    "teach": remarks.teach,
+    "teach_owned": remarks.teach_owned,
+    "forget": remarks.forget,
     "name_place": home.name_place,
     "rule": home.rule,
     "rule_always": home.rule_always,

@@ -1,5 +1,7 @@
 """What a noun and a place can mean, and the words that name nothing. Pure."""
 
+from importlib.resources import files
+
 import msgspec
 
 from common.floor_plan import Receptacle
@@ -46,6 +48,8 @@ LIVING = frozenset(
 NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
 """Words that are part of no thing's name."""
 HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
+ABSTRACT: frozenset[str] = frozenset((files(__package__) / "abstract_nouns.txt").read_text(encoding="utf-8").split())
+"""Nouns of what cannot be carried: `bring me luck` asks for nothing that could be found."""
 
 
 class Sense(msgspec.Struct, frozen=True):

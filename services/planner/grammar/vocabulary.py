@@ -12,8 +12,8 @@ from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
 from common.naming.names import normalise as unmarked
 from services.planner.config import PlannerConfig
-from services.planner.grammar.abstract_nouns import ABSTRACT
 from services.planner.grammar.senses import (
+    ABSTRACT,
     ANY,
     HERE,
     LIVING,

@@ -12,8 +12,7 @@ from common.messages import PlanStep, RejectedPlan
 from common.time.clock import monotonic
 from services.planner.config import PlannerConfig
 from services.planner.grammar.vocabulary import Vocabulary
-from services.planner.language_model.llm_plan import Impossible, checked
-from services.planner.language_model.prompt import messages, schema
+from services.planner.language_model.prompt import Impossible, checked, messages, schema
 from services.planner.plan_builder import same
 from services.planner.world import World
 
