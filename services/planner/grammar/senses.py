@@ -72,3 +72,16 @@ class Spot(msgspec.Struct, frozen=True):
     receptacle: Receptacle | None = None
     room: bool = False
     home: bool = False
+
+
+def singulars(phrase: str) -> list[tuple[str, bool]]:
+    """What a noun may be the plural of, and whether it is; the noun itself first."""
+    forms = [(phrase, False)]
+    if phrase.endswith("s"):
+        forms += [(phrase[:-1], True)]
+    if phrase.endswith("es"):
+        forms += [(phrase[:-2], True)]
+    first, _, rest = phrase.partition(" of ")
+    if rest and first.endswith("s"):
+        forms += [(f"{first[:-1]} of {rest}", True)]
+    return forms
