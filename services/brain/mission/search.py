@@ -6,7 +6,7 @@ import msgspec
 
 from common import messages as m
 
-SIDES = 3
+ALL_SIDES = 3
 """Sides from which an object is looked at from nearer. Chosen: a can shows all of what goes around it in three."""
 SAME_PLACE = 0.03
 """Distance [m] within which an object is one that stood there before. Chosen: half of what two that touch are apart."""
@@ -14,7 +14,7 @@ SAME_PLACE = 0.03
 
 class NearLooks(msgspec.Struct):
     """The `place` [m, map] of an object, and the directions [rad, map] from it to where the robot has looked at it from
-    nearer: at most SIDES. Its name and id may have changed since."""
+    nearer: at most ALL_SIDES. Its name and id may have changed since."""
 
     place: m.Vec3
     directions: list[float]

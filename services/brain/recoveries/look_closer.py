@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from common import messages as m
 from services.brain.mission.context import Context
-from services.brain.mission.search import SIDES
+from services.brain.mission.search import ALL_SIDES
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_near, near_possible
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
@@ -56,7 +56,7 @@ class MoveCloser(GoAndLook):
             seen_from = search.directions(found.position)
             self.view = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
             # One that cannot be reached, or has no other side, is not tried again either.
-            angles = [math.atan2(self.view[1] - y, self.view[0] - x)] if self.view else [0.0] * SIDES
+            angles = [math.atan2(self.view[1] - y, self.view[0] - x)] if self.view else [0.0] * ALL_SIDES
             search.looked_near(found.position, angles)
             self._target = found
         ctx.mission.at = ""

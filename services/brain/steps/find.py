@@ -16,7 +16,7 @@ from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
-from services.brain.mission.search import SIDES
+from services.brain.mission.search import ALL_SIDES
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import GoAndLook, Navigate, drive_to
 from services.brain.world import viewpoint_search
@@ -78,7 +78,7 @@ class LocateObject(SendGoal):
         """Those of the labels whose objects were not looked at from nearer from all sides."""
         places = {o.label: o.position for o in self.ctx.objects}
         search = self.ctx.mission.search
-        return [n for n in labels if n not in places or len(search.directions(places[n])) < SIDES]
+        return [n for n in labels if n not in places or len(search.directions(places[n])) < ALL_SIDES]
 
 
 class MoveToViewpoint(GoAndLook):
