@@ -129,6 +129,8 @@ DOUBT = CONFIG.certain - 0.01
         (("put the mug next to the mug", "accept", 0.9, "Put the mug next to the...", 0.8),
          "put the mug next to the mug", "accept", 0.9),
         (("", "reject", 0.1, "Go to the", 0.9), "", "reject", 0.1),
+        (("the mug", "reject", 0.1, "The mug to the table. Then go to the shelf.", 0.9),
+         "the mug to the table, then go to the shelf", "accept", 0.9),
         (("hey jarvis stop", "accept", 0.6, "Go to the table.", 0.9), "stop", "accept", 0.6),
         (("hey jarvis", "accept", 0.6, "Go to the table.", 0.9), "", "accept", 0.6),
     ],

@@ -8,6 +8,7 @@ import numpy as np
 
 from common.bus.port import Io, Job
 from common.household import Household
+from common.language.meaning import asks_for
 from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, scope
@@ -22,26 +23,43 @@ LOADING = 0.5
 PATIENCE = 1.5
 """How long an utterance that was found to be no command may be gone on with [s] (chosen: with `end_silence` before it,
 twice the pause of somebody who looks for a word)."""
+REST = 4.0
+"""How long what follows on an utterance may last before that is acted on alone [s] (chosen: more than half a sentence
+takes; a television goes on)."""
+SURE = 0.8
+"""Confidence below which a command is asked about, as the brain does, and so may wait for what follows."""
+DOUBT = 0.7
+"""How long after its end an utterance that will be asked about waits for more [s] (chosen: with `end_silence` before
+it, the pause of somebody who looks for a word, whom a question that comes too early would talk over)."""
 NOTHING: Samples = np.zeros(0, np.int16)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PendingUtterance:
     """An utterance in recognition; `key` is the listen goal at its end, `began` the time of its beginning [s],
-    `samples` its sound (n,)."""
+    `ended` that of its end [s], `samples` its sound (n,)."""
 
     job: Job[Recognition]
     scope: Scope
     context: UtteranceContext
     key: tuple[str, int]
     began: float
+    ended: float
     samples: Samples
+
+    def goes_on(self, began: float) -> bool:
+        """Is what was said from then on the rest of this utterance, unless that asks to stop?"""
+        if self.scope == "interrupt" or not self.ended < began <= self.ended + PATIENCE:
+            return False
+        found = self.job.result()
+        return _rank(found) > 0 and not asks_for(found.text, "stop", "cancel", "yes", "no")
 
 
 class UtteranceQueue:
     """`push` sound, `take` what was recognised. The wake word opens a window for the utterance after it.
 
-    What begins soon after an utterance that was `keep`t unfinished is one with it: "bring me ... the red mug".
+    What begins soon after an utterance that was `keep`t unfinished, or before it was taken, is one with it: "bring me
+    ... the red mug".
     """
 
     def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], FrontEnd]) -> None:
@@ -109,8 +127,8 @@ class UtteranceQueue:
         return not self.busy
 
     def settle(self, utterance: PendingUtterance) -> None:
-        """Drop what else was said in the same breath: what this utterance asked for is done."""
-        self._pending = deque(u for u in self._pending if u.began != utterance.began)
+        """Drop what was said before and in the same breath: what this utterance asked for is done."""
+        self._pending = deque(u for u in self._pending if u.began > utterance.began)
         self._settled = self._settled or utterance.began == self._began
 
     def push(
@@ -134,13 +152,24 @@ class UtteranceQueue:
                 self._submit(segment, now, key)
 
     def take(self, now: float) -> PendingUtterance | None:
-        """The next utterance that is through recognition, its context as it is now."""
-        if not self._pending or not self._pending[0].job.poll(now):
+        """The next utterance that is through recognition and waits for nothing more, its context as it is now."""
+        for utterance in self._pending:
+            if not utterance.job.poll(now):
+                return None
+            if not self._waits(utterance, now):
+                break
+        else:
             return None
-        utterance = self._pending.popleft()
+        self._pending.remove(utterance)
         if utterance.context.window and utterance.began <= self._window_closed:
             return replace(utterance, context=replace(utterance.context, window=False))
         return utterance
+
+    def _waits(self, utterance: PendingUtterance, now: float) -> bool:
+        """Does somebody go on with this utterance, or might he, as it will be asked about?"""
+        if self._segmenter.speaking and now - self._began < REST and utterance.goes_on(self._began):
+            return True
+        return _rank(utterance.job.result()) < 2 and now < utterance.ended + DOUBT and utterance.goes_on(now)
 
     def _update_context(self, now: float, addressed: bool, speaking: bool, listening: bool) -> None:
         """Keep the circumstances of the utterance under way: how it began, and what came since."""
@@ -177,21 +206,36 @@ class UtteranceQueue:
             self._teach(self._front_end)
         front_end, samples, wake = self._front_end, segment.samples, segment.wake
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
-        before = self._before(segment, context)
+        before, first = self._before(segment, context, now)
 
         def recognise() -> Recognition:
-            whole = np.concatenate([before, samples])
-            found = front_end.result().recognise(whole, asked, wake)
-            alone = len(before) and found.verdict != "accept"
-            return front_end.result().recognise(samples, asked, wake) if alone else found
+            listen = front_end.result().recognise
+            found = listen(np.concatenate([before, samples]), asked, wake)
+            if first is not None:
+                return found if _rank(found) >= _rank(first) else first
+            return found if not len(before) or found.verdict == "accept" else listen(samples, asked, wake)
 
         job = self._io.submit(recognise, seconds=seconds)
-        self._pending.append(PendingUtterance(job, asked, context, key, self._began, samples))
+        self._pending.append(PendingUtterance(job, asked, context, key, self._began, now, samples))
 
-    def _before(self, segment: Segment, context: UtteranceContext) -> Samples:
-        """The sound of the utterance that a segment goes on with, no more of it than an utterance may be long."""
+    def _before(self, segment: Segment, context: UtteranceContext, now: float) -> tuple[Samples, Recognition | None]:
+        """The sound of the utterance that a segment goes on with, no more of it than an utterance may be long, and what
+        was recognised in it if that could stand alone."""
         if not (segment.over and context.meant):
-            return NOTHING
+            return NOTHING, None
         before, self._unfinished = self._unfinished, NOTHING
         room = round(self._config.max_utterance * RATE) - len(segment.samples)
-        return before[-room:] if self._began <= self._unfinished_until and room > 0 else NOTHING
+        if context.woken or room <= 0:
+            return NOTHING, None  # who says the wake word begins anew
+        for utterance in self._pending:
+            if utterance.job.poll(now) and utterance.goes_on(self._began):
+                self._pending.remove(utterance)
+                return utterance.samples[-room:], utterance.job.result()
+        return (before[-room:] if self._began <= self._unfinished_until else NOTHING), None
+
+
+def _rank(found: Recognition) -> int:
+    """How well something was understood: 2 for what is done at once, 1 for what is asked about, 0 for no command."""
+    if found.verdict not in ("accept", "ask") or not found.text or found.mistaken:
+        return 0
+    return 2 if found.verdict == "accept" and found.confidence >= SURE else 1

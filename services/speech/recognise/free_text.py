@@ -12,7 +12,7 @@ from common.language.spoken import BETWEEN, Understanding, perhaps, turns, under
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import Recognition
 from services.speech.recognise.sounding import NEAR, VERY_NEAR, resounded
-from services.speech.recognise.wake_text import without_wake
+from services.speech.recognise.wake_text import clauses, without_wake
 
 UNLISTED = 0.5
 """Most confidence in words that are on no list. Chosen: below that from which the brain does not ask."""
@@ -80,7 +80,7 @@ def cost(text: str, names: Container[str], config: SpeechConfig) -> float:
 
 def _plain(text: str, config: SpeechConfig) -> str:
     """A transcription in normalised words with their commas, without the wake word."""
-    return without_wake(normalise(text, ",").strip(" ,"), config.wake).strip(" ,")
+    return without_wake(clauses(text), config.wake).strip(" ,")
 
 
 def _breaks_off(free: str, found: Recognition) -> bool:

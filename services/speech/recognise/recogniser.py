@@ -15,7 +15,7 @@ from common.language.wordings import INTERRUPTS
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.scoring import likeliest, prior_cost, rescored, time_scaled
-from services.speech.recognise.wake_text import without_wake
+from services.speech.recognise.wake_text import clauses, without_wake
 
 if TYPE_CHECKING:
     from services.speech.recognise.moonshine import Decoded, EncodedUtterance
@@ -133,7 +133,7 @@ class Recogniser:
         if not others:
             return heard
         chosen, share = likeliest(others, score(others), self._cost)
-        spelled = normalise(chosen.text, ",")
+        spelled = clauses(chosen.text)
         plain = without_wake(spelled, self._config.wake)
         if woken and plain == spelled:
             return heard  # in it the wake word reads otherwise: nobody knows where the command begins

@@ -1,10 +1,20 @@
-"""The wake word in what was transcribed. Pure."""
+"""The words and the wake word in what was transcribed. Pure."""
 
+import re
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 
+from common.language.normalise import normalise
+
 WAKE_LIKENESS = 0.85
 """Least share of letters in common with the wake word (chosen: `they jarvins` has 0.91, `hey travis` 0.8)."""
+
+_STOPS = re.compile(r"[.;:!?]+(?=\s)")
+
+
+def clauses(text: str) -> str:
+    """A transcription in normalised words, with a comma where it pauses or a sentence ends within it."""
+    return normalise(_STOPS.sub(",", text), ",").strip(" ,")
 
 
 def without_wake(text: str, phrases: Iterable[str]) -> str:
