@@ -7,7 +7,7 @@ from typing import Any
 from common.html.environment import environment
 from evaluation.case import Result
 from evaluation.report.statistics import share, wilson
-from evaluation.report.text import rates
+from evaluation.report.text import facts
 
 BUSY = {"PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING"}
 CARRIED = 0.3
@@ -35,7 +35,10 @@ def render(report: dict[str, Any], results: Sequence[Result]) -> str:
         .render(
             title=f"tidybot eval {report['suite']}",
             report=report,
-            facts=_facts(report),
+            facts={
+                **facts(report),
+                "bar": f"{100 * report['bar']:.0f} % as expected: {'met' if report['passed'] else 'not met'}",
+            },
             stages=bars([*by_stage(rows), ("as expected", sum(r.met for r in rows), len(rows))]),
             seconds=strip([(r.sim_seconds, r.met, _title(r)) for r in rows], "s", _axis_end(longest)),
             efficiency=strip(efficient, "", 1.0),
@@ -44,17 +47,6 @@ def render(report: dict[str, Any], results: Sequence[Result]) -> str:
             results=rows,
         )
     )
-
-
-def _facts(report: dict[str, Any]) -> dict[str, str]:
-    wall = max(report["wall_seconds"], 0.1)
-    return {
-        **rates(report),
-        "bar": f"{100 * report['bar']:.0f} % as expected: {'met' if report['passed'] else 'not met'}",
-        "path efficiency (SPL)": f"{report['spl']:.2f}",
-        "robot time": f"{report['sim_seconds']:.0f} s, {report['sim_seconds'] / wall:.1f} x real time",
-        "wall time": f"{report['wall_seconds']:.0f} s",
-    }
 
 
 def _failure(result: Result) -> dict[str, Any]:

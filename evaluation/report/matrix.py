@@ -52,11 +52,9 @@ def tally(results: Sequence[Result]) -> Tally:
 
 def chaos_tables(results: Sequence[Result]) -> Group:
     """One table a fault, services by states, and one of all faults."""
-    faults = list(dict.fromkeys(_fault(r) for r in results))
+    faults = dict.fromkeys(map(_fault, results))
     head = "recovered / honest error / lost, and seconds of robot time from the fault to the mission's next step"
-    return Group(
-        head, *(_by_state(f, [r for r in results if _fault(r) == f]) for f in faults), _summary(faults, results)
-    )
+    return Group(head, *(_by_state(f, [r for r in results if _fault(r) == f]) for f in faults), all_faults(results))
 
 
 def _fault(result: Result) -> str:
@@ -87,10 +85,11 @@ def cell(results: Sequence[Result]) -> str:
     return f"[{style}]{found.recovered}/{found.reported}/{found.lost}[/]{took}"
 
 
-def _summary(faults: Sequence[str], results: Sequence[Result]) -> Table:
+def all_faults(results: Sequence[Result]) -> Table:
+    """Rows of fault kinds: what came of them, with 95 % intervals."""
     heads = ("fault", "hit", "recovered", "honest error", "lost", "not struck", "dropped", "false claims")
     table = Table(*heads, "mean s", "max s", title="all faults", title_justify="left")
-    for fault in [*faults, "all"]:
+    for fault in [*dict.fromkeys(map(_fault, results)), "all"]:
         found = tally([r for r in results if fault in ("all", _fault(r))])
         table.add_row(fault, *_numbers(found))
     return table

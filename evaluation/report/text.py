@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from evaluation.case import Result
-from evaluation.report.matrix import chaos_tables
+from evaluation.report.matrix import all_faults, chaos_tables
 from evaluation.report.statistics import interval, share
 
 STYLES = {
@@ -84,12 +84,8 @@ def show(console: Console, report: dict[str, Any], results: Sequence[Result]) ->
     """The summary, the failure causes by stage, and whether the suite's bar is met."""
     count = report["scenarios"]
     table = Table(title=f"suite {report['suite']}, {count} scenarios", title_justify="left", show_header=False)
-    for name, text in rates(report).items():
+    for name, text in facts(report).items():
         table.add_row(name, text)
-    table.add_row("path efficiency (SPL)", f"{report['spl']:.2f}")
-    wall = max(report["wall_seconds"], 0.1)
-    table.add_row("robot time", f"{report['sim_seconds']:.0f} s, {report['sim_seconds'] / wall:.1f} x real time")
-    table.add_row("wall time", f"{report['wall_seconds']:.0f} s")
     console.print(table)
     if report["by_cause"]:
         causes = Table(title="failures by stage", title_justify="left", show_header=False)
@@ -98,16 +94,16 @@ def show(console: Console, report: dict[str, Any], results: Sequence[Result]) ->
             causes.add_row(name, share(number, count), f"seeds {seeds}")
         console.print(causes)
     if report["suite"] == "faults":
-        console.print(by_fault(results))
+        console.print(all_faults(results))
     if report["suite"] == "chaos":
         console.print(chaos_tables(results))
     verdict = "[green]met[/]" if report["passed"] else "[bold red]not met[/]"
     console.print(f"bar: {100 * report['bar']:.0f} % as expected and no false claim: {verdict}", highlight=False)
 
 
-def rates(report: dict[str, Any]) -> dict[str, str]:
-    """Every rate of a report in words, with its 95 % interval, as terminal and HTML show it."""
-    count = report["scenarios"]
+def facts(report: dict[str, Any]) -> dict[str, str]:
+    """A report in words, every rate with its 95 % interval, as terminal and HTML show it."""
+    count, wall = report["scenarios"], max(report["wall_seconds"], 0.1)
     found = {"delivered, by physics": share(report["delivered"], count)}
     if report["objects"] > count:
         found["objects where they belong"] = share(report["objects_delivered"], report["objects"])
@@ -115,21 +111,10 @@ def rates(report: dict[str, Any]) -> dict[str, str]:
     found["scenarios with a wrong thing in the hand"] = share(report["wrong_thing"], count)
     found["scenarios with a false claim"] = share(report["false_success"], count)
     found["false claims"] = str(report["false_claims"])
+    found["path efficiency (SPL)"] = f"{report['spl']:.2f}"
+    found["robot time"] = f"{report['sim_seconds']:.0f} s, {report['sim_seconds'] / wall:.1f} x real time"
+    found["wall time"] = f"{report['wall_seconds']:.0f} s"
     return found
-
-
-def by_fault(results: Sequence[Result]) -> Table:
-    """Rows of fault kinds: recovered, honestly reported, lost, not struck, false claims, and the mean time."""
-    heads = ("fault", "recovered", "reported", "lost", "not struck", "false claims", "robot s")
-    table = Table(*heads, title="by fault, with 95 % intervals", title_justify="left")
-    for fault in sorted({str(r.evidence.get("fault", "")) for r in results}):
-        rows = [r for r in results if r.evidence.get("fault") == fault]
-        good, told = sum(r.delivered for r in rows), sum(r.outcome == "reported" for r in rows)
-        missed = sum(r.outcome == "not struck" for r in rows)
-        shares = (share(n, len(rows)) for n in (good, told, len(rows) - good - told - missed))
-        mean = sum(r.sim_seconds for r in rows) / len(rows)
-        table.add_row(fault, *shares, str(missed), str(sum(r.false_claims for r in rows)), f"{mean:.0f}")
-    return table
 
 
 def _things(result: Result) -> list[dict[str, Any]]:
