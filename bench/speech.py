@@ -14,7 +14,6 @@ the sentence.
 import argparse
 import csv
 import hashlib
-import random
 import sys
 import time
 import zlib
@@ -81,7 +80,7 @@ def main() -> int:
     reader = Reader(parameters, load_household("apartment"))
     with manifest.open(encoding="utf-8") as file:
         recordings = list(csv.DictReader(file, delimiter="\t"))
-    random.Random(0).shuffle(recordings)
+    Random(0).shuffle(recordings)
     mix = Mixer(args, recordings)
     recordings = [r for r in recordings if args.voice in ("", r["voice"])]
     if args.everyday:
@@ -167,10 +166,6 @@ def half_of(sentence: str) -> str:
     return ("tuning", "held")[hashlib.sha1(sentence.encode()).digest()[0] & 1]
 
 
-if __name__ == "__main__":
-    sys.exit(main())
-
-
 # --- everyday sentences by voice: does the planner make of what was heard what it makes of the typed sentence?
 def drawn(count: int, seed: int) -> list[str]:
     """That many everyday sentences at random, of those that are said without anything before."""
@@ -195,3 +190,7 @@ def _steps(text: str) -> list[PlanStep]:
     plan = planned(text)
     plan = planned(plan.asks) if plan.asks else plan
     return [*plan.looks, *plan.steps]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
