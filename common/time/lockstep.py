@@ -14,6 +14,9 @@ from common.time.clock import ManualClock, monotonic
 
 DT = 0.01
 """A tick [s]: fixed by the interface, 100 Hz."""
+HUNG = 120.0
+"""Wall time [s] after which a participant is not waited for any longer; chosen: twice what the watchdog gives one that
+is stuck. Who is still there then is at work, on a machine that is busy."""
 
 
 class Stepped(Protocol):
@@ -50,7 +53,7 @@ class Barrier:
         self,
         next_ack: Callable[[float], tuple[str, int, int] | None],
         wait_for: Iterable[str] = (),
-        limit: float = 30.0,
+        limit: float = HUNG,
         report: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._next_ack, self._limit, self._report = next_ack, limit, report

@@ -3,6 +3,7 @@
 import os
 
 from cli.processes.watchdog import FROZEN, IDLE, STUCK, Pulse, look
+from common.time.lockstep import HUNG
 
 
 def heard() -> Pulse:
@@ -52,3 +53,7 @@ def test_what_the_system_tells_of_a_process() -> None:
     stopped, worked = look(os.getpid())
     assert not stopped and worked > 0
     assert look(2**30) == (False, 0.0)
+
+
+def test_lockstep_waits_for_who_is_slow_until_the_watchdog_has_ended_who_is_stuck() -> None:
+    assert HUNG > STUCK + FROZEN
