@@ -33,7 +33,7 @@ PARTS = {
     "services.sim.sensors:Sensors.scan": "lidar",
     "services.sim.sensors:Sensors.feel": "joints and wheels",
     "services.sim.base:BaseDriver.advance": "drivers",
-    "services.sim.arm:ArmDriver.advance": "drivers",
+    "services.sim.drivers:ArmDriver.advance": "drivers",
     "services.sim.contacts:Contacts.step": "contact log",
     "common.rendering.renderer:Renderer.load": "state",
     "common.rendering.renderer:Renderer.rgbd": "drawing",

@@ -16,9 +16,9 @@ from services.brain.journal.pictures import MissionQueries
 from services.brain.mission.asides import Asides
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
-from services.brain.mission.offers import Offers
 from services.brain.mission.remarks import Remarks
 from services.brain.mission.statuses import receive_statuses
+from services.brain.mission.voice import Offers
 from services.brain.pipelines.fetch import fetch_tree
 from services.brain.pipelines.vla import vla_tree
 from services.brain.resume.resumption import Resumption, suspend

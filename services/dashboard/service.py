@@ -14,18 +14,17 @@ from common.runtime import StartError
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
-from services.dashboard.hand import HandTeleoperation
 from services.dashboard.panels import markup
 from services.dashboard.panels.cameras import Cameras
 from services.dashboard.panels.history_buffers import TreeReasons
+from services.dashboard.panels.markup import status_bar
 from services.dashboard.panels.plots import Plots
-from services.dashboard.panels.status_bar import status_bar
 from services.dashboard.panels.tracking_error import FRESH
 from services.dashboard.panels.widgets import Panels
 from services.dashboard.scene.live import LiveScene
 from services.dashboard.scene.picking import pick
 from services.dashboard.supervisor_client import Supervisor
-from services.dashboard.teleoperation import Teleoperation
+from services.dashboard.teleoperation import HandTeleoperation, Teleoperation
 from services.dashboard.web.events import Asked, Click, Sound, Words
 from services.dashboard.web.listener import PageError
 from services.dashboard.web.server import Web

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,26 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
 from common.time.lockstep import DT
-from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
 from services.sim.body import Body
 from services.sim.checkpoint import Checkpoint
 from services.sim.config import SimConfig
 
+JUMP = 0.6
+"""Largest way [rad] of a joint to its next set-point that is no mistake."""
+BEGIN = 0.05
+"""Largest way [rad] of a joint to the first set-point after silence: a stream begins where the arm is, or was told to
+be. What went on while nobody heard it would be caught up with at full speed, past the path. Chosen: the arm's sag is
+less."""
+SPEED, ACCELERATION = np.array([1.39] * 4 + [1.22] * 3), np.array([5.2] * 4 + [10.0] * 3)
+"""What the joints (7,) of a Kinova Gen3 can do [rad/s, rad/s^2] (user guide): so set-points that come late, or all at
+once, are caught up with."""
+HASTE, LEAST, FADES = 1.0, 0.1, 0.9
+"""How much faster than its stream the arm catches up with it, as a share of the stream's speed, and at least [rad/s];
+share of the speed that is remembered from one set-point to the next. Chosen: something in the hand that goes down at 6
+cm/s, so that it may meet its surface, meets it at 12 at the most."""
+LATE = 1.5
+"""Periods without a set-point [count] from which the next one is late."""
 MAX_DISTANCE = 50.0
 """Largest coordinate [m] or velocity [m/s, rad/s] that is no mistake: beyond the largest flat."""
 Array = NDArray[np.float64]
@@ -105,3 +120,63 @@ class Drivers:
 
 def _sane(value: float) -> bool:
     return math.isfinite(value) and abs(value) <= MAX_DISTANCE
+
+
+# --- the arm's driver: follows a stream of joint set-points and holds when it falls silent
+class ArmDriver:
+    """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
+    that is late, as far as `SPEED` and `ACCELERATION` allow; `limits` lowest and highest angles.
+
+    Behind a stream it catches up no faster than it can brake to the stream's own speed, nor than twice that speed: what
+    is told to go slowly goes slowly.
+    """
+
+    def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
+        self._low, self._high = limits
+        self._position, self._goal = position.copy(), position.copy()
+        self._velocity: Array = np.zeros(7)
+        self._stream: Array = np.zeros(7)
+        self._pace: Array = np.zeros(7)
+        self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
+
+    def follow(self, position: list[float], period: float, now: float, actual: Array) -> str:
+        """Take the next set-point, with the joints (7,) measured at `actual`; the reason when it is refused."""
+        goal: Any = np.array(position)
+        if goal.shape != (7,) or not np.isfinite(goal).all() or not 0 < period <= 1.0:
+            return "a set-point is 7 finite angles and a period of at most 1 s"
+        if (goal < self._low).any() or (goal > self._high).any():
+            return "set-point beyond a joint limit"
+        if np.abs(goal - self._position).max() > JUMP:
+            return f"set-point jumps by more than {JUMP} rad"
+        gap = now - self._heard
+        if gap > self._timeout and min(np.abs(goal - at).max() for at in (self._position, actual)) > BEGIN:
+            return f"the stream does not begin within {BEGIN} rad of where the arm is"
+        # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
+        self._left = gap if LATE * period < gap < self._timeout else period
+        self._stream = (goal - self._goal) / self._left if gap < self._timeout else np.zeros(7)
+        self._pace = np.maximum(np.abs(self._stream), FADES * self._pace)
+        self._goal, self._heard = goal, now
+        return ""
+
+    def halt(self, actual: Array) -> None:
+        """Hold the measured position."""
+        self._position, self._goal, self._left = actual.copy(), actual.copy(), 0.0
+        self._velocity = np.zeros(7)
+
+    def advance(self, now: float, dt: float) -> Array:
+        """The set-point after `dt` seconds."""
+        if now - self._heard > self._timeout:
+            self._left, self._goal = 0.0, self._position
+        way = self._goal - self._position
+        if self._left > 0:
+            # Half of the acceleration brakes it to the speed of the stream, which may brake with the other half.
+            room = np.minimum(np.sqrt(ACCELERATION * np.abs(way)), HASTE * self._pace + LEAST)
+            wanted = np.clip(way / max(self._left, dt), self._stream - room, self._stream + room)
+        else:
+            # Nothing more was said: it comes to rest there.
+            wanted = np.sign(way) * np.minimum(np.abs(way) / dt, np.sqrt(2 * ACCELERATION * np.abs(way)))
+        change = np.clip(wanted - self._velocity, -ACCELERATION * dt, ACCELERATION * dt)
+        self._velocity = np.clip(self._velocity + change, -SPEED, SPEED)
+        self._position = np.clip(self._position + self._velocity * dt, self._low, self._high)
+        self._left = max(0.0, self._left - dt)
+        return self._position

@@ -9,7 +9,7 @@ import pytest
 from common import messages as m
 from common.mission_log.states import under_way
 from services.dashboard.panels import markup
-from services.dashboard.panels.status_bar import resumable, status_bar
+from services.dashboard.panels.markup import resumable, status_bar
 
 CANCELLED = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="cancelled", reason="stopped: stop button")
 DELIVERED = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="delivered")

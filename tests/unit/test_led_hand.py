@@ -10,8 +10,8 @@ from common import topics
 from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
-from services.dashboard import hand as page
-from services.dashboard.hand import HandTeleoperation
+from services.dashboard import teleoperation as page
+from services.dashboard.teleoperation import HandTeleoperation
 from services.manipulation.execution.led_hand import SILENCE, SPEED
 from tests.unit.led_arm import LedArm
 
@@ -43,7 +43,7 @@ def test_the_page_sends_while_somebody_holds_on_and_one_stop_after() -> None:
     seat.led.hold("1 0 -0.5 0 0 1", 1.0)
     for now in (1.0, 1.0 + page.HOLD - 0.01, 1.0 + page.HOLD, 2.0, 9.0):
         seat.step(now)
-    moving = m.HandVelocity(linear=(page.SPEED, 0.0, -page.SPEED / 2), angular=(0.0, 0.0, page.TURN))
+    moving = m.HandVelocity(linear=(page.HAND_SPEED, 0.0, -page.HAND_SPEED / 2), angular=(0.0, 0.0, page.HAND_TURN))
     assert seat.sent() == [moving, moving, m.HandVelocity()]
 
 

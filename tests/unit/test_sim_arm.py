@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.sim.arm import ACCELERATION, BEGIN, LEAST, SPEED, ArmDriver
+from services.sim.drivers import ACCELERATION, BEGIN, LEAST, SPEED, ArmDriver
 
 DT, PERIOD = 0.01, 0.02
 WIDE = np.full(7, -3.0), np.full(7, 3.0)

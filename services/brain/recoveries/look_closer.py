@@ -17,8 +17,7 @@ from services.brain.steps.find import LocateObject
 from services.brain.steps.leaf import Settle
 from services.brain.steps.motion import GoAndLook
 from services.brain.tree.composites import Retry, Sequence
-from services.brain.world.reading_poses import reading_pose
-from services.brain.world.standing_poses import standing_pose
+from services.brain.world.standing_poses import reading_pose, standing_pose
 
 MOST = 8
 """Looks from nearer, one after the other, for one view (chosen: at as many objects as stand on a table, and at some of

@@ -21,8 +21,7 @@ from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import GoAndLook, Navigate, drive_to
 from services.brain.world import viewpoint_search
 from services.brain.world.placement import TIPPED, kind_meant
-from services.brain.world.reading_poses import FARTHEST, shows_another_side
-from services.brain.world.standing_poses import standing_pose
+from services.brain.world.standing_poses import FARTHEST, shows_another_side, standing_pose
 
 
 class LocateObject(SendGoal):
