@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
+from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment, Surface
 from services.perception.segments.separate import pieces
@@ -88,20 +89,20 @@ def test_a_crowd_wider_than_any_object_is_its_objects() -> None:
         assert min(math.dist(at, (x, y)) for at in found) < 0.02
 
 
-def rod(colours: list[tuple[int, int, int]], widths: list[float]) -> tuple[View, Segment]:
-    """What lies across the view, 0.2 m long: a half cylinder of pieces of those colours and widths, end to end."""
+def rod(colours: list[tuple[int, int, int]], widths: list[float], long: float = 0.2) -> tuple[View, Segment]:
+    """What lies across the view, `long` [m]: a half cylinder of pieces of those colours and widths, end to end."""
     h = w = 200
     u, v = np.meshgrid(np.arange(w) + 0.5 - w / 2, np.arange(h) + 0.5 - h / 2)
     rays = np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
     depth, rgb = np.full((h, w), np.inf), np.zeros((h, w, 3), np.uint8)
     for n, (colour, radius) in enumerate(zip(colours, widths, strict=True)):
-        length = 0.2 / len(colours)
+        length = long / len(colours)
         a = rays[..., 0] ** 2 + rays[..., 2] ** 2
         x, z = 1.0, FLOOR + 0.02 - EYE[2]
         b = rays[..., 0] * x + rays[..., 2] * z
         with np.errstate(invalid="ignore"):
             far = (b - np.sqrt(b * b - a * (x * x + z * z - radius * radius))) / a
-        along = far * rays[..., 1] + 0.1 - n * length
+        along = far * rays[..., 1] + long / 2 - n * length
         hit = (along > 0) & (along < length) & (far < depth) & (EYE[2] + far * rays[..., 2] > FLOOR)
         depth[hit], rgb[hit] = far[hit], colour
     seen = np.isfinite(depth)
@@ -122,6 +123,21 @@ def test_a_surface_that_runs_on_is_one_whatever_is_printed_on_it() -> None:
     cut = (stepped.points[:, 1] > 0.0).astype(np.intp)
     assert unseamed(view, stepped, cut, 0.0015) is not None
     assert unseamed(view, whole, cut[: len(whole.rows)], 0.01) is not None, "noise hides whether it does"
+
+
+def test_a_blade_and_its_handle_are_one() -> None:
+    view, tool = rod([GREEN, RED], [0.016, 0.02])
+    cut = (tool.points[:, 1] > 0.0).astype(np.intp)
+    assert jointed(view, tool, cut, 0.0015) is None
+    on_it = ((np.abs(tool.points[:, 1] - 0.05) < 0.02) & (tool.points[:, 2] > FLOOR + 0.03)).astype(np.intp)
+    assert jointed(view, tool, on_it, 0.0015) is not None, "what lies on another meets it all round"
+    view, high = rod([GREEN, RED], [0.03, 0.045])
+    assert jointed(view, high, (high.points[:, 1] > 0.0).astype(np.intp), 0.0015) is not None
+
+
+def test_what_is_as_long_as_a_ladle_is_one() -> None:
+    (found,) = pieces(*rod([RED], [0.015], long=0.34))
+    assert found.shape.size[0] == pytest.approx(0.34, abs=0.03)
 
 
 def test_what_is_wider_than_any_object_and_of_one_piece_is_none() -> None:

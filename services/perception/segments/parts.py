@@ -6,6 +6,7 @@ from scipy import ndimage
 
 from common.geometry import Array
 from services.perception.segments.air import ATTACHED, gap, hangs
+from services.perception.segments.alike import BRIDGED, one_in_picture
 from services.perception.segments.dark import Blobs, Pixels, guessed
 from services.perception.segments.segment import Segment, Surface, covered
 from services.perception.views.view import Mask, View
@@ -16,8 +17,9 @@ as depth noise and the slope between two pixels grow with the distance."""
 JUMP_PER_METRE = 0.012
 JOIN = 0.02
 """Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
-JOINED_EXTENT = 0.17
-"""Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
+JOINED_EXTENT, LONGEST = 0.17, 0.30
+"""Largest extents [m] on the floor plan of what is joined, and of what is joined because the picture shows it as one.
+Chosen: a bowl and its noise; a watering can with its spout."""
 
 
 def parts(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], least: int) -> list[Pixels]:
@@ -66,12 +68,14 @@ def joined(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, 
         # The samples are at least as far apart as their bounds.
         for j in order[n + 1 :]:
             one_blob = numbers[i] > 0 and numbers[i] == numbers[j]
-            apart = max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN
+            apart = max(*(low[i] - high[j]), *(low[j] - high[i])) >= BRIDGED
             if groups[i] == groups[j] or (apart and not one_blob):
                 continue
             members = (groups == groups[i]) | (groups == groups[j])
             extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
-            if extent < JOINED_EXTENT and (one_blob or _gap(clouds[i], clouds[j]) < JOIN):
+            distance = _gap(clouds[i], clouds[j])
+            near = extent < JOINED_EXTENT and (one_blob or distance < JOIN)
+            if near or (extent < LONGEST and distance < BRIDGED and one_in_picture(view, plane, parts[i], parts[j])):
                 groups[groups == groups[j]] = groups[i]
     _carried(view, plane, clouds, groups)
     found = []

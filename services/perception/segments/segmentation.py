@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from common.floor_plan import Box, FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
 from services.perception.segments.dark import Blobs, blobs
+from services.perception.segments.flat import patches
 from services.perception.segments.outlined import is_part, on_surface, with_parts
 from services.perception.segments.parts import JUMP, joined, parts
 from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
@@ -156,6 +157,9 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     far = view.depth.ravel()[kept.pixels] > FAR
     beyond = kept.kept(far).outside(near.far_walls).pixels
     above = np.concatenate([kept.pixels[~far], beyond])
+    if least == THIN:
+        flat = patches(view, cloud.pixels, cloud.z - height, over)
+        above = np.union1d(above, flat[0] * view.shape[1] + flat[1])
     if len(above) < MIN_PIXELS:
         return outlined
     rows, columns = np.unravel_index(above, view.shape)

@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from common.geometry import Array, Rectangle
 from services.perception.segments.air import hangs
+from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
@@ -49,6 +50,8 @@ VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND, BRIDGE = 0.006, 0.01
 """Half width [m] of that line, and of what is looked through under it."""
+LONGEST, WIDEST = 0.42, 0.12
+"""Extents [m] on the floor plan up to which what is too long for a vessel is one object: a ladle, a rolling pin."""
 SPLITS = 2
 """How often pieces are cut again."""
 
@@ -62,10 +65,17 @@ class Piece:
 
 
 def pieces(view: View, segment: Segment) -> list[Piece]:
-    """The objects that a segment consists of; none where it is too wide for one and nothing parts it."""
+    """The objects that a segment consists of; none where it is too wide for one and nothing parts it, but a tool."""
     if extent(segment) >= MAX_EXTENT:
-        return [p for part in _crowd(view, segment) for p in pieces(view, part)]
+        crowd = [p for part in _crowd(view, segment) for p in pieces(view, part)]
+        return crowd or [p for p in [Piece(segment, measured(view, segment))] if _is_long(p.shape)]
     return _pieces(view, Piece(segment, measured(view, segment)), SPLITS)
+
+
+def _is_long(shape: Measurement) -> bool:
+    """It is as long as the longest tool, and no wider."""
+    width, length = sorted(shape.size[:2])
+    return length < LONGEST and width < WIDEST
 
 
 def _crowd(view: View, segment: Segment) -> list[Segment]:
@@ -86,7 +96,7 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
         unseamed(view, segment, coloured, noise) if coloured is not None else None,
         by_valley(view, segment),
     ):
-        if cut is None:
+        if cut is None or (cut := jointed(view, segment, cut, noise)) is None:
             continue
         cuts = _cut(segment, cut)
         hanging = np.isin(cut, [n for n, s in enumerate(cuts) if hangs(view, s.points, s.surface.height)])

@@ -1,0 +1,76 @@
+"""What lies so flat that no pixel of it stands out of the noise of depth: a patch of another colour than its surface
+has, that stands out as a whole. Pure.
+
+A comb of 4 mm is one standard deviation high from 2 m. The mean height of its pixels is known five times better, and
+print, a stain or a shadow has none.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from services.perception.segments.dark import Pixels
+from services.perception.segments.segment import RIM
+from services.perception.views.view import View
+
+OTHER, DARKER = 0.12, 0.3
+"""Differences from the surface around, of chromaticity and of brightness by that, from which a pixel is of another
+colour; the means of 3 x 3 pixels. Chosen: three times the noise of either in a dim room, beyond the grain of wood."""
+AROUND = 61
+"""Side [pixels] of the square in which the surface's own colour is taken."""
+LEAST, MOST = 24, 3000
+"""Pixels of a patch, at least, and beyond which it is a cloth."""
+LIFT, SURE = 0.0012, 2.5
+"""Height [m] of a patch over the surface around it, at least, and in standard deviations of its mean. Chosen: a third
+of a comb's; a surface shows hardly any patch of another colour that is none."""
+ALIKE = 25
+"""Pixels that share their noise: stereo cameras match windows of about 5 x 5."""
+
+
+def patches(view: View, pixels: NDArray[np.intp], heights: NDArray[np.float32], over: NDArray[np.bool_]) -> Pixels:
+    """Rows and columns of the patches that lie on a surface whose `pixels` (n,) have these heights [m] over its plane.
+
+    `over` (n,): those that stand out of it by themselves.
+    """
+    rows, columns = np.unravel_index(pixels, view.shape)
+    top, left = int(rows.min()), int(columns.min())
+    window = slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1)
+    height = np.full((window[0].stop - top, window[1].stop - left), np.nan, np.float32)
+    height[(rows - top)[~over], (columns - left)[~over]] = heights[~over]
+    level = np.isfinite(height)
+    other = level & _of_another_colour(view.rgb[window].astype(np.float32), level)
+    numbers = ndimage.label(other, np.ones((3, 3)))[0]
+    counts = np.bincount(numbers.ravel())
+    found = np.zeros(level.shape, bool)
+    for n in np.flatnonzero((counts >= LEAST) & (counts < MOST)):
+        if n and _lifts(numbers, int(n), height, level & ~other):
+            found |= numbers == n
+    at = np.nonzero(found)
+    return at[0] + top, at[1] + left
+
+
+def _of_another_colour(rgb: NDArray[np.float32], level: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which pixels (h, w) have another colour than the surface, seen where it is `level`, around them."""
+    weight = np.maximum(ndimage.uniform_filter(level.astype(np.float32), AROUND), 1e-3)
+    planes = [ndimage.uniform_filter(rgb[..., i], 3) for i in range(3)]
+    around = [ndimage.uniform_filter(plane * level, AROUND) / weight for plane in planes]
+    own, usual = np.maximum(sum(planes), 1.0), np.maximum(sum(around), 1.0)
+    off = sum(np.abs(a / own - b / usual) for a, b in zip(planes, around, strict=True))
+    return np.asarray((off > OTHER) | (np.abs(own - usual) > DARKER * usual))
+
+
+def _lifts(numbers: NDArray[np.int32], n: int, height: NDArray[np.float32], plain: NDArray[np.bool_]) -> bool:
+    """A patch is higher on average than the `plain` surface around it."""
+    rows, columns = np.nonzero(numbers == n)
+    low, high = (
+        (np.array([rows.min(), columns.min()]) - 2 * RIM).clip(0),
+        (rows.max() + 2 * RIM, columns.max() + 2 * RIM),
+    )
+    window = slice(low[0], high[0] + 1), slice(low[1], high[1] + 1)
+    own = numbers[window] == n
+    around = ndimage.binary_dilation(own, iterations=2 * RIM) & plain[window]
+    if np.count_nonzero(around) < len(rows) / 2:
+        return False
+    mine, others = height[window][own], height[window][around]
+    error = float(max(mine.std(), others.std())) * np.sqrt(ALIKE / len(mine) + ALIKE / len(others))
+    return bool(mine.mean() - others.mean() > max(LIFT, SURE * error))

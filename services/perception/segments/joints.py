@@ -1,0 +1,44 @@
+"""Whether low pieces hang together end to end: a blade and its handle are one tool, whatever their colours. Pure."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.perception.segments.segment import Segment
+from services.perception.views.view import View
+
+LOW = 0.045
+"""Height [m] over the surface up to which pieces lie there: a ladle, a brush, no block. Chosen: what stands beside
+another stands higher."""
+SHORT = 0.3
+"""Share of the smaller piece's outline at which they meet, up to which that is a joint. Chosen: a handle meets its
+blade at a tenth, a pen the book that it lies on all round."""
+STEP, STEP_NOISE = 0.006, 2.0
+"""Step of depth [m] at that line, plus that of noise, up to which one goes on in the other."""
+
+
+def jointed(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) -> NDArray[np.intp] | None:
+    """The number (n,) of the piece of each pixel of `cut`, those that meet at a joint as one; None if all do.
+
+    `noise` [m]: of points along the line of sight.
+    """
+    if float(np.percentile(segment.points[:, 2], 98)) - segment.surface.height > LOW:
+        return cut
+    numbers = np.full((int(np.ptp(segment.rows)) + 3, int(np.ptp(segment.columns)) + 3), -1)
+    rows, columns = segment.rows - segment.rows.min() + 1, segment.columns - segment.columns.min() + 1
+    numbers[rows, columns] = cut
+    far = np.zeros(numbers.shape, np.float32)
+    far[rows, columns] = view.depth[segment.rows, segment.columns]
+    sides = [(numbers[:-1], numbers[1:], far[:-1], far[1:]), (numbers[:, :-1], numbers[:, 1:], far[:, :-1], far[:, 1:])]
+    first, second, one, other = (np.concatenate([side[i].ravel() for side in sides]) for i in range(4))
+    edge = first != second
+    first, second, step = first[edge], second[edge], np.abs(one - other)[edge]
+    outline = [np.count_nonzero((first == n) | (second == n)) for n in range(int(cut.max()) + 1)]
+    names = np.arange(len(outline))
+    for a in range(len(outline)):
+        for b in range(a):
+            meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
+            short = 0 < len(meet) < SHORT * min(outline[a], outline[b])
+            if short and np.quantile(meet, 0.25) < STEP + STEP_NOISE * noise:
+                names[names == names[a]] = names[b]
+    left, found = np.unique(names[cut], return_inverse=True)
+    return found.reshape(-1).astype(np.intp) if len(left) > 1 else None

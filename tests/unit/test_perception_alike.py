@@ -1,0 +1,54 @@
+"""What the picture tells of parts that depth alone does not join, or does not see."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from services.perception.segments.flat import patches
+from services.perception.segments.parts import joined, parts
+from services.perception.views.view import View
+
+HIGH, FOCAL = 1.0, 400.0
+TABLE, RED = (120, 90, 60), (150, 20, 20)
+DOWN = np.array([[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+
+
+def above(rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> View:
+    """A picture from HIGH over a table, straight down."""
+    h, w = depth.shape
+    return View(rgb, depth, (FOCAL, FOCAL), (w / 2, h / 2), np.array([0.0, 0.0, HIGH]), DOWN)
+
+
+def two_bars(between: tuple[int, int, int]) -> View:
+    """Two red bars, 50 mm high, and 12 pixels (28 mm) of a colour and without depth between them."""
+    rgb, depth = np.full((120, 180, 3), TABLE, np.uint8), np.full((120, 180), HIGH, np.float32)
+    rgb[30:90, 40:114], depth[30:90, 40:114] = RED, HIGH - 0.05
+    rgb[30:90, 71:83], depth[30:90, 71:83] = between, 0.0
+    return above(rgb, depth)
+
+
+@pytest.mark.parametrize(("between", "count"), [(RED, 1), (TABLE, 2)])
+def test_parts_are_one_where_the_picture_shows_that_one_goes_on_in_the_other(
+    between: tuple[int, int, int], count: int
+) -> None:
+    view = two_bars(between)
+    rows, columns = np.nonzero((view.depth > 0) & (view.depth < HIGH - 0.01))
+    cut = parts(view, rows, columns, 8)
+    assert len(cut) == 2
+    assert len(joined(view, "table", np.zeros(3), cut, np.zeros(view.shape, bool), None)) == count
+
+
+@pytest.mark.parametrize(("thick", "seen"), [(0.004, True), (0.0, False)], ids=["a comb", "print"])
+def test_a_patch_of_another_colour_is_a_thing_where_it_lifts_as_a_whole(thick: float, seen: bool) -> None:
+    rng = np.random.default_rng(3)
+    noise = ndimage.uniform_filter(rng.normal(0.0, 0.008, (120, 160)), 5)
+    rgb = np.full((120, 160, 3), TABLE, np.uint8)
+    rgb[50:58, 50:110] = RED
+    heights = noise + thick * (rgb[..., 0] == RED[0])
+    assert np.percentile(heights[50:58, 50:110], 10) < np.percentile(noise, 90), "no pixel stands out by itself"
+    pixels = np.arange(rgb[..., 0].size)
+    rows, _ = patches(
+        above(rgb, np.full((120, 160), HIGH, np.float32)), pixels, heights.ravel().astype(np.float32), pixels < 0
+    )
+    assert (len(rows) > 300) == seen
