@@ -112,3 +112,10 @@ def test_what_may_as_well_be_white_in_less_light_has_both_words() -> None:
     assert main_words(found) == ["grey", "white"] and found["white"] > 0.2
     assert main_words(shares(pixels((0.62, 0.62, 0.6), 300), np.ones(3))) == ["white"]
     assert main_words(shares(pixels((0.4, 0.4, 0.4), 300), np.ones(3))) == ["grey"]
+
+
+def test_grey_is_called_so_in_a_home_whose_surfaces_are_warm() -> None:
+    warm = np.array([1.29, 1.31, 1.46])
+    steel = np.broadcast_to(np.array([94, 100, 106], np.uint8), (300, 3))
+    assert {"grey", "white"} & set(main_words(shares(steel, warm)))
+    assert "blue" in main_words(shares(np.broadcast_to(np.array([90, 110, 150], np.uint8), (300, 3)), np.ones(3)))

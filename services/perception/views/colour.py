@@ -21,9 +21,13 @@ SHADOW = 0.55
 COLOURED, HUE_PARTS, BRIGHT = 0.3, 12, 85
 """Saturation from which a pixel has a hue, the parts of the circle of hues that are told apart, and the percentile of
 brightness of what is lit. Chosen: as wide as a colour's word."""
-_SHADES = ((0.36, 0.0, 1.0), (0.16, -0.012, 1.0), (0.16, 0.012, 1.0), (0.16, 0.0, 0.88), (0.16, 0.0, 1.14))
-"""Weight, turn of the hue [turns] and gain of the brightness with which a colour is named: at the limit it has
-two words. Chosen: what light and camera leave uncertain."""
+_SHADES = (
+    (0.2, 0.0, 1.0, 0.7), (0.16, 0.0, 1.0, 0.4), (0.16, 0.0, 1.0, 1.0),
+    (0.12, -0.012, 1.0, 0.7), (0.12, 0.012, 1.0, 0.7), (0.12, 0.0, 0.88, 0.7), (0.12, 0.0, 1.14, 0.7),
+)  # fmt: skip
+"""Weight, turn of the hue [turns], gain of the brightness and share of the light's cast with which a colour is named: at
+the limit it has two words. Chosen: what light and camera leave uncertain; a home's neutral surfaces are warm themselves,
+so that grey seems blue where all of that is taken for the light's."""
 MOST_PIXELS = 600
 """Pixels of an object whose colours are named."""
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
@@ -118,8 +122,9 @@ def shares(rgb: NDArray[np.uint8], gains: Array) -> dict[str, float]:
     values = rgb.astype(np.float64) / 255 * gains
     values = _evenly_lit(values[~_shaded(values)][:: max(1, len(values) // MOST_PIXELS)])
     counts = np.zeros(len(WORDS))
-    for weight, turn, gain in _SHADES:
-        counts += weight * np.bincount(pixel_words(values * gain, turn), minlength=len(WORDS)) / max(1, len(values))
+    for weight, turn, gain, cast in _SHADES:
+        words = pixel_words(values * gain * (gains / gains.mean()) ** (cast - 1.0), turn)
+        counts += weight * np.bincount(words, minlength=len(WORDS)) / max(1, len(values))
     return {WORDS[n]: float(counts[n]) for n in np.argsort(-counts, kind="stable") if counts[n] > 0.02}
 
 
