@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array
-from services.perception.segments.dark import Pixels
+from services.perception.segments.dark import DARK, Pixels
 from services.perception.views import colour
 from services.perception.views.view import View
 
 ALIKE = 0.05
 """Difference of two colours (`colour.difference`) up to which they are of one thing. Chosen: light and shade of one
 make .04, a colour beside another .15."""
+SHADE = 0.4
+"""Brightness of one part by that of the other from which it may be its shaded side."""
 OWN = 0.12
 """Difference of chromaticity, the mean of 3 x 3 pixels, up to which a pixel has that colour: three times its noise
 where it is dim."""
@@ -28,8 +30,10 @@ LEVEL, AROUND = 0.006, 12
 def one_in_picture(view: View, plane: Array, a: Pixels, b: Pixels) -> bool:
     """One of two parts goes on in the other through pixels of their colour, and the surface z = plane (3,) @ (x, y, 1)
     around them is of another."""
-    own = colour.typical(view.rgb[a])
-    if colour.difference(own, colour.typical(view.rgb[b])) >= ALIKE:
+    own, its = colour.typical(view.rgb[a]), colour.typical(view.rgb[b])
+    darker, brighter = sorted((float(own.max()), float(its.max())))
+    # What is dark has no colour; its outline joins it.
+    if darker < max(DARK / 255, SHADE * brighter) or colour.difference(own, its) >= ALIKE:
         return False
     rows, columns = (np.concatenate(pair) for pair in zip(a, b, strict=True))
     top, left = max(0, int(rows.min()) - AROUND), max(0, int(columns.min()) - AROUND)

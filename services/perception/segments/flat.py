@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from services.perception.segments.dark import Pixels
+from services.perception.segments.dark import DARK, Pixels
 from services.perception.segments.segment import RIM
 from services.perception.views.view import View
 
@@ -56,7 +56,9 @@ def _of_another_colour(rgb: NDArray[np.float32], level: NDArray[np.bool_]) -> ND
     around = [ndimage.uniform_filter(plane * level, AROUND) / weight for plane in planes]
     own, usual = np.maximum(sum(planes), 1.0), np.maximum(sum(around), 1.0)
     off = sum(np.abs(a / own - b / usual) for a, b in zip(planes, around, strict=True))
-    return np.asarray((off > OTHER) | (np.abs(own - usual) > DARKER * usual))
+    differs = (off > OTHER) | (np.abs(own - usual) > DARKER * usual)
+    # What is dark has its own way to be seen: by its outline.
+    return np.asarray(differs & (np.max(planes, axis=0) > DARK))
 
 
 def _lifts(numbers: NDArray[np.int32], n: int, height: NDArray[np.float32], plain: NDArray[np.bool_]) -> bool:
