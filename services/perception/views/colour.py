@@ -25,9 +25,9 @@ _SHADES = (
     (0.2, 0.0, 1.0, 0.7), (0.16, 0.0, 1.0, 0.4), (0.16, 0.0, 1.0, 1.0),
     (0.12, -0.012, 1.0, 0.7), (0.12, 0.012, 1.0, 0.7), (0.12, 0.0, 0.88, 0.7), (0.12, 0.0, 1.14, 0.7),
 )  # fmt: skip
-"""Weight, turn of the hue [turns], gain of the brightness and share of the light's cast with which a colour is named: at
-the limit it has two words. Chosen: what light and camera leave uncertain; a home's neutral surfaces are warm themselves,
-so that grey seems blue where all of that is taken for the light's."""
+"""Weight, turn of the hue [turns], gain of the brightness and share of the light's cast with which a colour is named:
+at the limit it has two words. Chosen: what light and camera leave uncertain; a home's neutral surfaces are warm
+themselves, so that grey seems blue where all of that is taken for the light's."""
 MOST_PIXELS = 600
 """Pixels of an object whose colours are named."""
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
