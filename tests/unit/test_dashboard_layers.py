@@ -10,7 +10,8 @@ from common.geometry import matrix_quat
 from common.household import load_household
 from services.dashboard.panels.tracking_error import arm_error, off_path
 from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
-from services.manipulation.grasps.grasp import candidates, shown
+from services.manipulation.grasps.grasp import shown
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
 from services.navigation.planning.costmap import Costmap
 

@@ -16,7 +16,7 @@ from common.kinds import KINDS
 from common.plan_rules import known_world
 from common.scene import ObjectSpec, load_scene
 from examples.odometer import DISTANCE, OdometerConfig, OdometerService
-from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
 from services.perception.shapes.known import distances
 from services.planner.config import PlannerConfig

@@ -100,6 +100,18 @@ def test_a_long_thing_is_taken_across_near_its_middle_from_above() -> None:
     assert best.width == pytest.approx(0.03, abs=0.012)
 
 
+def test_a_low_thing_with_a_wide_end_is_taken_across_its_blade() -> None:
+    """Scissors: the pads touch hardly more of it than their tips."""
+    blade = np.array(
+        [(x, y, 0.0035) for x in np.linspace(-0.02, 0.09, 32) for y in (-0.009, -0.004, 0.0, 0.004, 0.009)]
+    )
+    eyes = np.array([(-0.05 + 0.03 * math.cos(t), 0.045 * math.sin(t), 0.0035) for t in np.linspace(0, math.tau, 40)])
+    points = np.concatenate([blade, eyes])
+    found = grasps(target("irregular", (0.17, 0.09, 0.007), points))
+    assert found and found[0].width == pytest.approx(0.018, abs=0.006)
+    assert abs(found[0].pose.rotation[1, 1]) > math.cos(math.radians(16))
+
+
 def test_a_waist_is_taken_where_it_is_narrow() -> None:
     """A vase of 100 mm with a neck of 40 mm, seen from its front."""
     heights = np.linspace(-0.1, 0.1, 60)

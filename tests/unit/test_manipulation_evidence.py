@@ -9,9 +9,11 @@ import pytest
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.evidence import as_held, believed, explained, seen_between
-from services.manipulation.grasps.grasp import Grasp, candidates
-from services.manipulation.grasps.surface import rim_height, rim_lean, surface
+from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.rules import candidates
+from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target
+from services.manipulation.grasps.vessel import rim_height, rim_lean
 
 AT = (0.6, 0.0, 0.7)
 OPENING, WIDEST = 0.085, 0.0761
@@ -58,6 +60,29 @@ def test_what_a_shape_explains_stays_what_it_is() -> None:
     can = seen("round", (0.06, 0.06, 0.1), around([(0.03, -0.05), (0.03, 0.05)]))
     assert explained(can) and believed(can) is can
     assert explained(replace(can, points=None))
+
+
+BASKET, HOOP = (0.124, 0.084, 0.13), 0.0055
+"""Extents of a box that is open above, with a hoop of 11 mm along its length."""
+
+
+def basket(hoop: bool = True) -> Target:
+    """A basket as it is measured; without its `hoop` it has a lid on."""
+    x, y, z = (v / 2 for v in BASKET)
+    brim = -0.015 if hoop else z
+    side = np.array([(-x, b, h) for b in np.linspace(-y, y, 16) for h in np.linspace(-z, brim, 12)])
+    floor = plane((-x / 3, x), (-y, y), (-z + 0.006, -z + 0.006)) if hoop else plane((-x, x), (-y, y), (z, z))
+    turns = np.linspace(0.0, math.pi, 30)
+    rod = [((x - HOOP) * math.cos(t), b, brim + (z - brim) * math.sin(t)) for t in turns for b in (-HOOP, 0.0, HOOP)]
+    return seen("box", BASKET, np.concatenate([side, floor, *([np.array(rod)] if hoop else [])]))
+
+
+def test_a_box_that_was_seen_into_is_none_and_has_a_hoop_to_be_held_by() -> None:
+    closed = basket(hoop=False)
+    assert believed(closed) is closed and not grasps(closed)
+    found = grasps(believed(basket()))
+    assert found and found[0].width == pytest.approx(2 * HOOP, abs=0.008)
+    assert found[0].pose.position[2] > AT[2] + 0.02
 
 
 def test_a_vessel_is_seen_all_around() -> None:

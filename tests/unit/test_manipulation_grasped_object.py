@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
-from services.manipulation.grasps.grasp import candidates
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
 
 FORWARD, WIDEST = 0.12, 0.076

@@ -9,16 +9,8 @@ import pytest
 from common.geometry import quat_matrix
 from common.kinds import KINDS
 from common.messages.perception import ShapeFamily
-from services.manipulation.grasps.grasp import (
-    RIM_DEPTH,
-    Grasp,
-    approach_rotation,
-    candidates,
-    certainly_too_wide,
-    on_handle,
-    shown,
-    upper_end,
-)
+from services.manipulation.grasps.grasp import Grasp, approach_rotation, certainly_too_wide, on_handle, shown, upper_end
+from services.manipulation.grasps.rules import RIM_DEPTH, candidates
 from services.manipulation.grasps.target import Target
 
 FORWARD = 0.12

@@ -19,9 +19,10 @@ from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.arm.ik import InverseKinematics, seeds
 from services.manipulation.arm.trajectory import connect, free_line, timed
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasps.grasp import approach_rotation, candidates
+from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasp_store import GraspStore
 from services.manipulation.grasps.grasp_verification import held_badly, judge, settled
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
 from services.manipulation.service import ManipulationService
 from services.perception.config import PerceptionConfig

@@ -8,9 +8,10 @@ import pytest
 
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.antipodal import antipodal
-from services.manipulation.grasps.grasp import candidates
-from services.manipulation.grasps.surface import seen_open, surface
+from services.manipulation.grasps.rules import candidates
+from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target
+from services.manipulation.grasps.vessel import seen_open
 from tests.unit.test_manipulation_stances import PLANNER
 
 AT = (0.6, 0.0, 0.8)

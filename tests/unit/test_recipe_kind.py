@@ -25,7 +25,7 @@ from common.messages import KnownWorld, ObjectPose
 from common.household import load_words, told
 from common.scene import load_scene
 from services.brain.world import placement
-from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
 from services.perception.shapes.known import fit
 from services.planner.grammar import grammar

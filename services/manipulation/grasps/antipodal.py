@@ -14,7 +14,7 @@ from services.manipulation.arm.arm_model import Array, Pose
 from services.manipulation.grasps.grasp import Grasp, approach_rotation, on_handle, upper_end
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import PART
-from services.manipulation.grasps.pads import LONGEST, PLAY, Contact, contacts
+from services.manipulation.grasps.pads import CELL, CELLS, LONGEST, PLAY, Contact, contacts
 from services.manipulation.grasps.surface import guessed_along, surface
 from services.manipulation.grasps.target import Target
 
@@ -44,9 +44,11 @@ LOW = 0.09
 LEAST_SHARE, OF_PART = 0.25, 0.33
 """Least share of a pad that lies on the surface, and of the parts of something that is too wide for the hand: a ball of
 40 mm and the tube of a ring have .33 to .5, the edge of something, and the sloping rim of a plate, less."""
-THIN, FINGER = 0.012, 0.022
-"""Width [m] below which a part of something thicker is the noise of its outline, and the depth of a finger behind its
-pad (Robotiq 2F-85)."""
+OF_LOW = 0.66
+"""That share of what pads can touch of something that is lower than they are long: two of three cells of a blade."""
+THIN, FINGER = 0.008, 0.022
+"""Width [m] below which a part of something thicker is the noise of its outline, less than a hoop's, and the depth of a
+finger behind its pad (Robotiq 2F-85)."""
 CHORD = 0.5
 """Share of a ball's extent below which no chord of it is held: what is narrower is something else beside it, or its
 outermost cap, which slips out of the pads."""
@@ -65,6 +67,7 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     """
     points, centre = surface(target), np.array(target.position)
     facing = math.atan2(target.position[1], target.position[0] - forward)
+    most = OF_LOW * min(1.0, max(1, math.ceil((target.size[2] - PLAY) / CELL[1])) / CELLS[1])
     least, guessed = THIN if min(target.size) > 2 * THIN else 0.0, guessed_along(target)
     if kind_of(target.kind).shape == "sphere":
         least = max(least, CHORD * min(target.size))
@@ -74,7 +77,7 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             continue
         blind = GUESSED * abs(float(rotation[:, 1] @ guessed)) if guessed is not None else 0.0
         floor = rotation[2], target.bottom - target.position[2] + PLAY
-        for place, contact in _places((points - centre) @ rotation, floor, opening):
+        for place, contact in _places((points - centre) @ rotation, floor, opening, most):
             if not least <= contact.width <= widest:
                 continue
             at = centre + rotation @ place
@@ -91,11 +94,13 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     return _different(sorted(found, key=lambda entry: -entry[0]))
 
 
-def _places(local: Array, floor: tuple[Array, float], opening: float) -> Iterator[tuple[Array, Contact]]:
-    """As `contacts`; of what is wider than the fingers go the parts that have room for a finger on either side."""
+def _places(local: Array, floor: tuple[Array, float], opening: float, most: float) -> Iterator[tuple[Array, Contact]]:
+    """As `contacts`; of what is wider than the fingers go the parts that have room for a finger on either side. No more
+    than the share `most` of a pad is asked for.
+    """
     low, high = float(local[:, 1].min()), float(local[:, 1].max())
     if high - low <= opening - 2 * PLAY:
-        yield from (found for found in contacts(local, floor, opening) if found[1].share >= LEAST_SHARE)
+        yield from (found for found in contacts(local, floor, opening) if found[1].share >= min(LEAST_SHARE, most))
         return
     for across in np.arange(low, high + ASIDE, ASIDE):
         apart = np.abs(local[:, 1] - across)
@@ -103,7 +108,7 @@ def _places(local: Array, floor: tuple[Array, float], opening: float) -> Iterato
             continue
         part = local[apart <= opening / 2 + FINGER]
         for place, contact in contacts(part, floor, opening):
-            if abs(float(place[1]) - across) <= ASIDE / 2 and contact.share >= OF_PART:
+            if abs(float(place[1]) - across) <= ASIDE / 2 and contact.share >= min(OF_PART, most):
                 yield place, contact
 
 

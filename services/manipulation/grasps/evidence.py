@@ -12,8 +12,9 @@ from services.manipulation.grasps.antipodal import LEAST_SHARE
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import CERTAIN, Grasp
 from services.manipulation.grasps.pads import contact_at
-from services.manipulation.grasps.surface import all_around, surface
+from services.manipulation.grasps.surface import own_points, surface
 from services.manipulation.grasps.target import Target
+from services.manipulation.grasps.vessel import all_around
 
 OFF, UNEXPLAINED = 0.008, 0.1
 """How far [m] from the completed surface a seen point is of something else, and the share of such points from which the
@@ -24,6 +25,9 @@ STRAYS = 0.02
 HOLE, FILLED = 0.5, 0.05
 """Share of the radius within which a ring is open, and the least share of the points there of what is not: of an even
 upper side a quarter lies there."""
+WITHIN, BELOW, INSIDE = 0.5, 0.015, 0.25
+"""Share of the half extents of a box that is its middle, how far [m] below its top what was seen there is its inside,
+and the share of such points from which it is open: of a lid one sees nothing but its upper face."""
 BESIDE, BEFORE = 0.006, 0.045
 """How far [m] beside the pads, and before their middle, what is seen counts as between them: points lie 7 mm apart, and
 of what the hand comes to from its seen side only the front may be seen."""
@@ -43,6 +47,8 @@ def explained(target: Target) -> bool:
     if target.shape == "bowl" and not all_around(target.points):
         return False
     if target.shape in ("round", "bowl") and _is_ring(target.points, target.size):
+        return False
+    if target.shape == "box" and _is_open(target):
         return False
     return float(np.mean(_beside_shape(target))) < UNEXPLAINED
 
@@ -67,9 +73,20 @@ def _is_ring(points: Array, size: tuple[float, float, float]) -> bool:
     return size[2] < radius and bool(np.mean(middle) < FILLED)
 
 
+def _is_open(target: Target) -> bool:
+    """A box that was seen into from above: a tray, a basket with a hoop over it."""
+    seen, half = own_points(target), np.array(target.size) / 2
+    middle = seen[(np.abs(seen[:, :2]) < WITHIN * half[:2]).all(axis=1), 2]
+    return len(middle) >= LEAST_SEEN and float(np.mean(middle < half[2] - BELOW)) > INSIDE
+
+
 def believed(target: Target) -> Target:
-    """The object with its measured shape, or as it was seen where that does not explain it."""
-    return target if explained(target) else as_seen(target)
+    """The object with its measured shape, or as it was seen where that does not explain it: what is open from above has
+    its walls and hoops only."""
+    if explained(target):
+        return target
+    found = as_seen(target)
+    return replace(found, shape="long") if target.shape == "box" and _is_open(target) else found
 
 
 def as_seen(target: Target) -> Target:

@@ -6,7 +6,8 @@ import numpy as np
 
 from common.kinds import kind_of
 from services.manipulation.arm.arm_model import Pose
-from services.manipulation.grasps.grasp import RIM_DEPTH, Grasp, approach_rotation, vessel_of
+from services.manipulation.grasps.grasp import Grasp, approach_rotation, vessel_of
+from services.manipulation.grasps.rules import RIM_DEPTH
 from services.manipulation.grasps.target import Target
 
 ANGLES = (20, 35, 8)

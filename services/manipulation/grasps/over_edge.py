@@ -9,7 +9,8 @@ import numpy as np
 
 from common.kinds import PLATE_FOOT, kind_of
 from services.manipulation.arm.arm_model import Pose
-from services.manipulation.grasps.grasp import TURNS, Grasp, approach_rotation, upper_end, vessel_of
+from services.manipulation.grasps.grasp import Grasp, approach_rotation, upper_end, vessel_of
+from services.manipulation.grasps.rules import TURNS
 from services.manipulation.grasps.target import Target
 
 OVERLAPS = (0.034, 0.026, 0.018, 0.010, 0.004)

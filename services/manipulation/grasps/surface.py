@@ -21,17 +21,6 @@ BAND = 0.010
 WALL = 0.004
 """How far [m] within its outer wall, and below its rim, what was seen of a vessel is its inside. Chosen: three times
 the noise of depth at arm's length."""
-SECTORS, AROUND = 12, 0.75
-"""Into how many sectors a vessel is divided, and in which share of them some of it is seen: of its rim one sees all."""
-DEEP, DEEP_BY, BEYOND, OPEN = 0.022, 0.6, 0.25, 0.08
-"""How far [m] below the top, by the height where that is low, and how far beyond the axis, by the radius, what was seen
-is the inside of a vessel and no lid with its knob; and the share of all points from which it is open: a mug at 2 m
-shows twice as much."""
-AT_WALL, STANDS_OUT = 0.8, 0.015
-"""Share of the radius from which what was seen of a vessel is of its wall, and how far [m] something has to reach over
-that to be no part of it: a spout reaches less."""
-UPPER_WALL = 0.03
-"""How far [m] below a rim its wall is what the pads are laid on: their length less what is above it."""
 UPRIGHT, UPRIGHT_BY = 0.05, 0.7
 """Height [m], and by the lesser of the level extents, from which something irregular is seen from its front."""
 FRONT = 0.5
@@ -64,7 +53,7 @@ def _maker(target: Target) -> Callable[[Target], Array]:
 
 def _stands_up(target: Target) -> bool:
     """One sees more of its front than of what is on top."""
-    seen = _own(target)
+    seen = own_points(target)
     front = float(np.mean(seen[:, 2] < target.size[2] / 2 - BAND)) if len(seen) else 0.0
     tall = target.size[2] > max(UPRIGHT, UPRIGHT_BY * min(target.size[:2]))
     return not target.lies and tall and front > FRONT
@@ -81,13 +70,13 @@ def guessed_along(target: Target) -> Array | None:
 
 
 def _slices(target: Target) -> Array:
-    found = slices(_own(target), _away(target), target.size[2], SPACING)
+    found = slices(own_points(target), away(target), target.size[2], SPACING)
     return found if len(found) else _box(target)
 
 
 def _thinner(target: Target) -> bool:
     """What was seen of a box, its upper face included, is thinner than its extents, which then are a guess."""
-    seen, half = _own(target), np.array(target.size) / 2
+    seen, half = own_points(target), np.array(target.size) / 2
     upper = bool(np.count_nonzero(seen[:, 2] > half[2] - BAND) >= UPPER)
     return upper and bool((np.ptp(seen[:, :2], axis=0) < 2 * half[:2] - THINNER).any())
 
@@ -97,7 +86,7 @@ def _yaw(yaw: float) -> Array:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _own(target: Target) -> Array:
+def own_points(target: Target) -> Array:
     """What was seen (n, 3), along the object's own axes; empty when nothing was."""
     return np.empty((0, 3)) if target.points is None else target.points @ _yaw(target.yaw)
 
@@ -108,13 +97,13 @@ def _steps(low: float, high: float) -> Array:
 
 def _turned(target: Target) -> Array:
     """A surface of revolution: about the vertical, or about its own x when it lies."""
-    seen = _own(target)
+    seen = own_points(target)
     if target.lies:
         seen, (length, *across) = seen[:, [1, 2, 0]], target.size
     else:
         across, length = list(target.size[:2]), target.size[2]
     heights = _steps(-length / 2, length / 2)
-    radii = _profile(seen, heights, max(across) / 2)
+    radii = profile(seen, heights, max(across) / 2)
     inside = _inside(seen, heights, radii) if target.family == "bowl" and not target.lies else np.empty((0, 2))
     mouth = min(float(inside[:, 0].max()), radii[-1]) if len(inside) else 0.0
     flat = [(r, heights[0]) for r in _steps(0.0, radii[0])] + [(r, heights[-1]) for r in _steps(mouth, radii[-1])]
@@ -123,55 +112,10 @@ def _turned(target: Target) -> Array:
     return found[:, [2, 0, 1]] if target.lies else found
 
 
-def rim_lean(target: Target) -> float | None:
-    """How far [rad] the wall of a vessel leans outwards below its rim, where that was seen; None of what was not."""
-    seen, top = _own(target), target.size[2] / 2
-    if not target.measured or target.lies or len(seen) == 0:
-        return None
-    run = min(UPPER_WALL, target.size[2] / 2)
-    low, high = _profile(seen, np.array([top - run, top]), max(target.size[:2]) / 2)
-    return max(0.0, math.atan2(float(high - low), run))
-
-
-def rim_height(target: Target) -> float:
-    """How high [m] over its underside the rim of a vessel is: the height of its wall as it was seen around the axis,
-    where something that stands in it, or is its handle, reaches higher; the vessel's own where it was not seen."""
-    height, radius = target.size[2], max(target.size[:2]) / 2
-    seen = _own(target)
-    wall = seen[np.hypot(seen[:, 0], seen[:, 1]) > AT_WALL * radius]
-    if not target.measured or target.lies or not len(wall) or not all_around(wall):
-        return height
-    sectors = _sectors(wall)
-    tops = [float(wall[sectors == n, 2].max()) for n in np.unique(sectors)]
-    rim = float(np.median(tops)) + height / 2
-    return rim if rim < height - STANDS_OUT else height
-
-
-def seen_open(target: Target) -> bool:
-    """The far wall of a vessel was seen from inside, below its rim; True of what was not measured."""
-    if target.points is None or not target.measured:
-        return True
-    seen, height = _own(target), target.size[2]
-    deep = min(DEEP, DEEP_BY * height)
-    beyond = seen[:, :2] @ _away(target) > BEYOND * max(target.size[:2]) / 2
-    return float(np.mean(beyond & (seen[:, 2] < height / 2 - deep))) > OPEN
-
-
-def _away(target: Target) -> Array:
+def away(target: Target) -> Array:
     """The level direction (2,) from the robot to an object, along the object's own axes."""
     at = np.array(target.position[:2])
     found: Array = at @ _yaw(target.yaw)[:2, :2] / np.linalg.norm(at)
-    return found
-
-
-def all_around(points: Array) -> bool:
-    """Points (n, 3) lie on all sides of the axis."""
-    return len(np.unique(_sectors(points))) >= AROUND * SECTORS
-
-
-def _sectors(points: Array) -> Array:
-    """The number (n,) of the sector around the axis in which each point lies."""
-    found: Array = np.floor(np.arctan2(points[:, 1], points[:, 0]) / math.tau * SECTORS)
     return found
 
 
@@ -190,7 +134,7 @@ def _ring(radius: float, height: float) -> Array:
     return np.stack([radius * np.cos(turn), radius * np.sin(turn), np.full(count, height)], axis=1)
 
 
-def _profile(seen: Array, heights: Array, widest: float) -> Array:
+def profile(seen: Array, heights: Array, widest: float) -> Array:
     """The radius [m] at each height: the outermost that was seen there, `widest` at most; `widest` without sight."""
     radius, places, found = np.hypot(seen[:, 0], seen[:, 1]), [], []
     for middle in np.arange(heights[0], heights[-1] + BAND / 2, BAND):
@@ -226,7 +170,7 @@ def _box(target: Target) -> Array:
 
 def _columns(target: Target) -> Array:
     """A body of vertical columns from what was seen down to its underside."""
-    seen, bottom = _own(target), -target.size[2] / 2
+    seen, bottom = own_points(target), -target.size[2] / 2
     low, reach = seen[:, :2].min(axis=0), math.ceil(GAP / SPACING)
     index = np.floor((seen[:, :2] - low) / SPACING).astype(int) + reach
     shape = tuple(int(n) for n in index.max(axis=0) + 1 + reach)

@@ -15,10 +15,11 @@ from services.manipulation.arm.trajectory import Leg, connect, legs
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
 from services.manipulation.grasps.evidence import as_held, believed, has_parts, seen_between
-from services.manipulation.grasps.grasp import Grasp, candidates
+from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
 from services.manipulation.grasps.over_edge import flat_and_wide, is_round, over_an_edge
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target
 
