@@ -8,7 +8,7 @@ import numpy as np
 
 from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import overlooks, poses
-from cli.cameras.shot import Array, Mount, Shot
+from cli.cameras.shot import Mount, Shot
 from cli.cameras.surfaces import Arm, Room
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
@@ -16,6 +16,7 @@ from cli.link import Link, Watch
 from common import messages as m
 from common import topics
 from common.files.atomic_file import replace
+from common.geometry import Array
 from common.robot import calibration
 from common.robot.model import ARM
 

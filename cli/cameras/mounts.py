@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cli.cameras.shot import Array, Mount, Shot, rays
+from cli.cameras.shot import Mount, Shot, rays
 from cli.cameras.surfaces import Surface
-from common.geometry import quat_matrix
+from common.geometry import Array, quat_matrix
 
 ROUNDS = 12
 """Iterations; the error of a mount of 3 mm and .3 deg is below a hundredth of that after six."""

@@ -6,9 +6,9 @@ import numpy as np
 from scipy import ndimage
 
 from cli.cameras.mounts import LEAST, Unseen
-from cli.cameras.shot import Array, rays
+from cli.cameras.shot import rays
 from cli.cameras.surfaces import Arm, Room
-from common.geometry import quat_matrix
+from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
 
 LOWEST, WITHIN = 0.36, 0.85

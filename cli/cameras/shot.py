@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from common.geometry import Array
 from common.messages import Rgbd
 
-Array = NDArray[np.float64]
 STEP = 3
 """Every which row and column of a picture is used."""
 TRUE_OFFSET, TRUE_TURN = 0.001, np.radians(0.1)

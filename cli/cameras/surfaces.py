@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
-from cli.cameras.shot import Array, Mount, Shot, rays
-from common.geometry import quat_matrix
+from cli.cameras.shot import Mount, Shot, rays
+from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
 from common.robot.model import ARM, RobotKinematics, arm_limits, home_arm, subtree
 

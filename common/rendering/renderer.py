@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import turn_matrix
+from common.geometry import Array, turn_matrix
 from common.rendering.backend import choose
 from common.rendering.looks import SKY
 
-Array = NDArray[np.float64]
 FAR = 25.0
 """Depth [m] from which there is nothing: beyond the largest flat."""
 LAYERS = 12

@@ -4,9 +4,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from common.geometry import Array
+
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 BASE = ("base_x", "base_y", "base_yaw")
 HOME = "home"

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from services.mapping.scan import Array
+from common.geometry import Array
 
 Mask = NDArray[np.bool_]
 STEP, NORMAL = math.radians(1.0), math.radians(12)

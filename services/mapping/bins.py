@@ -4,9 +4,8 @@ import numpy as np
 from scipy import ndimage
 
 from common.floor_plan import BIN_WALL
-from common.geometry import Rectangle
+from common.geometry import Array, Rectangle
 from services.mapping.grid import RESOLUTION, Cells, Grid
-from services.mapping.scan import Array
 from services.mapping.surfaces import fit_rectangle
 
 BIN_SIDE, BIN_HEIGHT = (0.15, 0.65), (0.18, 0.62)

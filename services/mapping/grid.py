@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
-from common.geometry import Pose2
-from services.mapping.scan import Array, Scan
+from common.geometry import Array, Pose2
+from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
 
 Cells = NDArray[np.bool_]

@@ -10,12 +10,11 @@ from scipy import ndimage
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, LATERAL, ROOM
 from common.floor_plan import BIN_WALL, LEG, LEG_INSET, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
-from common.geometry import SIDES, Rectangle
+from common.geometry import SIDES, Array, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins
 from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
 from services.mapping.rooms import find_rooms
-from services.mapping.scan import Array
 from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
 from services.mapping.walls import find_walls
 

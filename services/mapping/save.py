@@ -12,7 +12,7 @@ from scipy import ndimage
 from common.files.atomic_file import replace
 from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, named_picture, surface_rows, write_map
 from common.files.plan_file import to_toml
-from common.geometry import compose
+from common.geometry import Array, compose
 from common.household import Household
 from services.mapping.barriers import Met, glass
 from services.mapping.depth import Picture
@@ -20,7 +20,7 @@ from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot
 from services.mapping.plan import Lidar, floor_plan
 from services.mapping.pose_graph import Edge, PoseGraph
-from services.mapping.scan import Array, Scan
+from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
 
 GRAPH, EVIDENCE = "pose_graph.json", "keyframes.npz"

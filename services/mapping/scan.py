@@ -2,13 +2,9 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from common import messages as m
+from common.geometry import Array
 from common.robot.lidar import rays_of
-
-Array = NDArray[np.float64]
 
 
 class Scan(NamedTuple):

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import KDTree
 
-from common.geometry import Pose2
-from services.mapping.scan import Array
+from common.geometry import Array, Pose2
 
 LAYERS = (-0.1, 0.0, 0.1)
 """Heights at which the points are repeated [m]: as far apart as neighbours on a wall some metres away."""

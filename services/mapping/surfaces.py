@@ -9,8 +9,7 @@ from scipy import ndimage
 from scipy.sparse import coo_matrix, csgraph
 from scipy.spatial import KDTree
 
-from common.geometry import Rectangle
-from services.mapping.scan import Array
+from common.geometry import Array, Rectangle
 
 CELL, LAYER = 0.05, 0.02
 """Extents of the voxels that neighbours are found in, across and up [m]: level points lie 2.5 cm apart."""

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from common.geometry import Pose2, compose, inverse
+from common.geometry import Array, Pose2, compose, inverse
 from services.mapping.pose_graph import Edge, PoseGraph
-from services.mapping.scan import Array, Scan
+from services.mapping.scan import Scan
 from services.mapping.scan_matching import Target, placed
 
 BESIDE, OLDEST = 1.0, 5

@@ -17,10 +17,9 @@ from scipy.sparse import csgraph
 
 from common.approach import FOOTPRINT
 from common.floor_plan import Vec2
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.grid_graph import graph_of
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
-from services.mapping.scan import Array
 
 CLEARANCE = FOOTPRINT + RESOLUTION / 2
 """Distance [m] from the edge of what is not free that a pose has: the footprint and half of a cell; a way has a cell

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from common.floor_plan import Wall
-from common.geometry import Rectangle
+from common.geometry import Array, Rectangle
 from services.mapping.askew import askew
-from services.mapping.scan import Array
 
 AROUND, NEIGHBOURS, LEAST, FLAT = 0.12, 48, 6, 0.85
 """How far from a point its direction is fitted [m], to how many cells of points at most and at least [count], and how

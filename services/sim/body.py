@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from common.robot.model import ARM, BASE, Hand, arm_limits, pads, subtree
 from common.time.lockstep import DT
 from services.sim.contacts import Contacts
@@ -14,7 +15,6 @@ SPEED = 0.150
 """How fast the pads come together at most [m/s]: Robotiq 2F-85, closing speed 20 to 150 mm/s."""
 COUNTS = 255
 """Steps in which the gripper tells where its motor stands (Robotiq 2F-85, register gPO)."""
-Array = NDArray[np.float64]
 AT_REST = 1e-3
 """Slower than this the pads stand still [m/s]."""
 

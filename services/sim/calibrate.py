@@ -5,8 +5,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from common.geometry import Array
 from common.robot.model import (
     ARM,
     BASE,
@@ -20,7 +20,6 @@ from common.robot.model import (
     subtree,
 )  # fmt: skip
 
-Array = NDArray[np.float64]
 STEPS, SETTLE = 11, 500
 """Postures of the gripper that are measured, and steps of physics [2 ms] until it rests in each."""
 

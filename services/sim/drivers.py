@@ -5,11 +5,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.time.lockstep import DT
 from services.sim.base import BaseDriver
 from services.sim.body import Body
@@ -33,7 +32,6 @@ LATE = 1.5
 """Periods without a set-point [count] from which the next one is late."""
 MAX_DISTANCE = 50.0
 """Largest coordinate [m] or velocity [m/s, rad/s] that is no mistake: beyond the largest flat."""
-Array = NDArray[np.float64]
 
 
 class Drivers:

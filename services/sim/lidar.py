@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 from services.sim.things.primitives import GROUP
 
@@ -16,7 +17,6 @@ BASE_BODY = "base"
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 """Rays of a turn [count] and nearest and farthest range [m], as small lidars for indoors have them."""
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
-Array = NDArray[np.float64]
 
 
 def cast(

@@ -3,18 +3,15 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import IDENTITY_POSE, Pose2, compose, inverse
+from common.geometry import IDENTITY_POSE, Array, Pose2, compose, inverse
 from common.robot.model import ARM, BASE
 from services.sim.body import Body
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
-
-Array = NDArray[np.float64]
 
 ENCODER_NOISE, ENCODER_ZERO = 2e-4, 5e-4
 """Standard deviation of an angle and most that a joint's zero is off [rad]; chosen: .01 and .03 degrees, a few tenths

@@ -9,11 +9,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from services.sim.menagerie import RobotError
 from services.sim.robot import HULL_GROUP, MAST, ROBOT_GROUP
 from services.sim.things.thinning import corners
 
-Array = NDArray[np.float64]
 THEIRS = {"base": "base_link", "arm_base": "gen3/base_link", "gripper": "base"}
 """Our bodies whose names are others there."""
 MERGED = {"left_silicone_pad": "left_pad", "right_silicone_pad": "right_pad"}

@@ -9,11 +9,10 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.messages import CameraMount
 from common.time.lockstep import DT
 from services.sim.battery import Battery
-from services.sim.body import Array
 from services.sim.config import SimConfig
 from services.sim.drivers import Drivers
 from services.sim.physics import Physics

@@ -7,9 +7,9 @@ import pytest
 
 from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
-from cli.cameras.shot import Array, Mount, Shot
+from cli.cameras.shot import Mount, Shot
 from cli.cameras.surfaces import Arm, Room
-from common.geometry import matrix_quat
+from common.geometry import Array, matrix_quat
 from common.messages import Rgbd
 from common.rendering.renderer import Renderer
 from common.robot import calibration

@@ -15,7 +15,7 @@ from services.brain.recoveries.identify import ask_about_the_near, near_possible
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject
 from services.brain.steps.leaf import Settle
-from services.brain.steps.motion import GoAndLook
+from services.brain.steps.views import GoAndLook
 from services.brain.tree.composites import Retry, Sequence
 from services.brain.world.standing_poses import reading_pose, standing_pose
 

@@ -8,8 +8,9 @@ from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_whether, may_be
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
-from services.brain.steps.find import LocateObject, MoveToViewpoint, ReportNotFound
+from services.brain.steps.find import LocateObject, ReportNotFound
 from services.brain.steps.leaf import Settle
+from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Retry, Selector, Sequence
 
 VIEWPOINTS = (2, 5, 9)

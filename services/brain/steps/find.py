@@ -18,8 +18,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.search import ALL_SIDES
 from services.brain.steps.leaf import Leaf, SendGoal
-from services.brain.steps.motion import GoAndLook, Navigate, drive_to
-from services.brain.world import viewpoint_search
+from services.brain.steps.motion import Navigate, drive_to
 from services.brain.world.placement import TIPPED, kind_meant
 from services.brain.world.standing_poses import FARTHEST, shows_another_side, standing_pose
 
@@ -78,48 +77,6 @@ class LocateObject(SendGoal):
         places = {o.label: o.position for o in self.ctx.objects}
         search = self.ctx.mission.search
         return [n for n in labels if n not in places or len(search.directions(places[n])) < ALL_SIDES]
-
-
-class MoveToViewpoint(GoAndLook):
-    """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
-
-    NOTHING_LEFT = ("NOTHING_NEW", "everything has been looked at")
-
-    def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "", item: str = "") -> None:
-        super().__init__(node_id, ctx, name)
-        self._elsewhere, self._item = elsewhere, item
-
-    def initialise(self) -> None:
-        super().initialise()
-        ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
-        looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
-        if self._elsewhere:
-            likely = ctx.likelihood(self._item)
-            self.view = viewpoint_search.elsewhere(
-                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told
-            )
-        else:
-            self.view = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)
-        mission.search.visited = looked_from
-        mission.at = ""
-
-    def succeed(self, result: Result) -> Status:
-        assert self.view is not None
-        search = self.ctx.mission.search
-        search.visited = [*search.visited, self.view]
-        return super().succeed(result)
-
-    def fail_with(self, failure: Failure) -> Status:
-        assert self.view is not None
-        search = self.ctx.mission.search
-        search.unreached = [*search.unreached, self.view]
-        return super().fail_with(failure)
-
-    def step(self) -> str:
-        return f"search: {self.name}"
-
-    def spoken(self) -> str:
-        return "I could not get to where I wanted to look."
 
 
 class TurnOnTheSpot(SendGoal):

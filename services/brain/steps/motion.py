@@ -20,8 +20,6 @@ from services.brain.world.placement import rested
 from services.brain.world.standing_poses import place_pose
 
 Text = Callable[[], str]
-HELD_UP = (PERSON, "WAITING", "GIVING_WAY", "BACKING_OFF")
-"""Navigation's codes while somebody or something keeps it from getting on."""
 LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 """Manipulation's codes for a hand that is empty and should have held something."""
 BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
@@ -90,45 +88,6 @@ class Navigate(SendGoal):
         if failure.code == "TIMEOUT":
             self.ctx.send_only(self.ctx.peers.navigation, topics.NAVIGATION_GOAL, "stop")
         return super().fail_with(failure)
-
-
-class GoAndLook(SendGoal):
-    """A drive to one of several views: where it is held up for `view_patience`, another one is taken first.
-
-    A subclass sets the `view` [map] as it begins; None: there is none, with the code and words of `NOTHING_LEFT`.
-    """
-
-    NOTHING_LEFT: tuple[str, str]
-
-    def __init__(self, node_id: str, ctx: Context, name: str = "") -> None:
-        limit = ctx.config.navigation_timeout
-        super().__init__(node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=limit, name=name)
-        self._held_up = self._at = 0.0
-        self.view: Pose2 | None = None
-
-    def initialise(self) -> None:
-        super().initialise()
-        self._held_up, self._at = 0.0, self.ctx.now
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        assert self.view is not None
-        return drive_to(goal_id, self.view)
-
-    def update(self) -> Status:
-        if self.view is None:
-            code, self.feedback_message = self.NOTHING_LEFT
-            return self.ctx.fail("GROUNDING", code, self.feedback_message, self.spoken())
-        ctx, told = self.ctx, self.ctx.io.latest(topics.NAVIGATION_FEEDBACK)
-        if told is not None and told.goal_id == self.channel.goal_id and told.code in HELD_UP:
-            self._held_up += ctx.now - self._at
-        self._at = ctx.now
-        result = self.channel.result
-        over = self._sent_at is None or (result is not None and result.status in ("ok", "failed"))
-        if over or self._held_up <= ctx.config.view_patience:
-            return super().update()
-        failed = self._failed(PERSON, f"held up for {self._held_up:.0f} s")
-        ctx.send_only(ctx.peers.navigation, topics.NAVIGATION_GOAL, "stop")
-        return failed
 
 
 class Manipulate(SendGoal):

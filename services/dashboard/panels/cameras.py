@@ -12,7 +12,6 @@ from common.picture_requests import PICTURES, PictureRequests
 from services.dashboard.config import DashboardConfig
 from services.dashboard.panels.widgets import Panels
 
-Array = NDArray[np.float64]
 NEAR = 0.1
 """Depth [m] from which on a box is drawn into a picture; chosen: a nearer one would fill it."""
 AGREES = 0.12

@@ -4,12 +4,9 @@ from collections import deque
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common import messages as m
-
-Array = NDArray[np.float64]
-
+from common.geometry import Array
 
 NodePath = tuple[str, ...]
 """A node of the tree: names from the root, each with its place among its siblings."""

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import matrix_quat, quat_matrix
+from common.geometry import Array, matrix_quat, quat_matrix
 
 if TYPE_CHECKING:
     from common.robot.model import Hand
 
-Array = NDArray[np.float64]
 ROBOT_BODY = "base"
 HIDDEN_GROUP = 4
 """First MuJoCo geom group that is not drawn: collision shapes are in it and above."""

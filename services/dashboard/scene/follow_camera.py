@@ -5,12 +5,10 @@ from typing import Any
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
 
 from common.floor_plan import FloorPlan
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 
-Array = NDArray[np.float64]
 AZIMUTH, ELEVATION = 225.0, 48.0
 """Where the camera looks from [deg]: from the south-west as plans are drawn, above the walls' upper edges."""
 HEIGHT = 0.4

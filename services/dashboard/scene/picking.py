@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common import messages as m
+from common.geometry import Array
 from services.dashboard.scene.drawing import Mesh
 
-Array = NDArray[np.float64]
 FLOOR = 0.03
 """Height [m] up to which a clicked point is floor; chosen: what lies flat on it is meant as floor, too."""
 REACH = 0.04

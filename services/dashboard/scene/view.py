@@ -4,16 +4,14 @@ from typing import Any
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
 
 from common import messages as m
-from common.geometry import Pose2, transformed
+from common.geometry import Array, Pose2, transformed
 from common.kinds import kind_of
 from common.naming.colours import COLOURS, UNKNOWN_COLOUR
 from common.robot.lidar import rays_of
 from services.dashboard.scene.drawing import Drawing, Mesh, posture, quaternion
 
-Array = NDArray[np.float64]
 GHOST = 0.3
 """Opacity of an object that was not seen for long; chosen: visible, yet not to be mistaken for a fresh sighting."""
 STILL = 1e-4

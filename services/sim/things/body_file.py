@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from common.files.body_file import load, middle, standing
+from common.geometry import Array
 from common.scene import ObjectSpec, body_name
 from services.sim.robot import HULL_GROUP
 from services.sim.things.convex import hollow, parts
@@ -23,7 +24,6 @@ from services.sim.things.mesh import xml
 from services.sim.things.primitives import CONTACT, GROUP
 from services.sim.things.thinning import FACES, corners, simplified
 
-Array = NDArray[np.float64]
 PIXELS = 512
 """Longest side of a texture: from 0.3 m a camera of 640 px sees 2 pixels a millimetre."""
 USUAL_DENSITY = 300.0

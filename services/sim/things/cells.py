@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-Array = NDArray[np.float64]
+from common.geometry import Array
+
 Part = tuple[Array, NDArray[np.int64]]
 STEPS = 48
 """Cubes along the longest side of a mesh, each of which gives a point: 2 mm on a mug."""

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.files import atomic_file
+from common.geometry import Array
 from services.sim.things import cells
-from services.sim.things.cells import Array, Part
+from services.sim.things.cells import Part
 
 THRESHOLD = 0.05
 """Concavity that CoACD leaves: its own default. A cup keeps its inside."""

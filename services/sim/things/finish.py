@@ -4,12 +4,12 @@ import io
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
+
+from common.geometry import Array
 
 SIZE = 256
 """Pixels of a metre: 4 mm each, finer than a camera sees from 1 m."""
-Array = NDArray[np.float64]
 GRAIN: dict[str, tuple[int, float, float]] = {
     # Seed, how coarse the grain is [px], and how much it changes the shade.
     "wood": (1, 3.0, 0.10), "tile": (2, 1.0, 0.02), "carpet": (3, 0.7, 0.10), "plaster": (4, 5.0, 0.03),

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from common.kinds import Segment
 
-Array = NDArray[np.float64]
 AROUND = 40
 """Corners of a round outline: at 0.3 m a can of 70 mm deviates from a circle by less than a pixel."""
 

@@ -6,9 +6,9 @@ import fast_simplification
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from services.sim.things.mesh import Mesh
 
-Array = NDArray[np.float64]
 FACES = 2000
 """Triangles that all meshes to look at of one body may have; twelve such cost a picture about as much as the flat."""
 REACH = 12.0
