@@ -17,7 +17,7 @@ from common.household import load_household
 from services.brain.config import BrainConfig
 from services.brain.journal import sqlite
 from services.brain.journal.open import open_journal
-from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
+from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, PathNode
 from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal
 from services.brain.mission.channel import SentGoal
 from services.brain.mission.mission import GripperState, Mission, Task
@@ -53,7 +53,7 @@ def told(journal: Journal, name: str, notes: int = 3) -> Mission:
 
 @pytest.mark.parametrize("kind", ["disk", "memory"])
 def test_missions_come_back_as_they_were_told(path: Path, kind: str) -> None:
-    journal: Journal = opened(path) if kind == "disk" else MemoryJournal()
+    journal: Journal = opened(path) if kind == "disk" else Journal()
     mission = told(journal, "m-1")
     mission.goals = 7
     journal.end(mission, "failed", "NO_WAY: blocked", 42.0)
@@ -332,11 +332,11 @@ def test_a_second_brain_on_the_same_file_does_not_hold_up_the_first(path: Path) 
 
 def test_where_the_journal_is_kept(tmp_path: Path) -> None:
     one = io()
-    assert isinstance(open_journal(BrainConfig(), one), MemoryJournal)
+    assert type(open_journal(BrainConfig(), one)) is Journal
     one.state_dir = tmp_path
     journal = open_journal(BrainConfig(), one)
     assert isinstance(journal, SqliteJournal) and journal.path == tmp_path / "missions.db"
-    assert isinstance(open_journal(BrainConfig(journal=""), one), MemoryJournal)
+    assert type(open_journal(BrainConfig(journal=""), one)) is Journal
     one.state_dir = None
     journal = open_journal(BrainConfig(journal=str(tmp_path / "other.db")), one)
     assert isinstance(journal, SqliteJournal) and (tmp_path / "other.db").exists()

@@ -5,14 +5,14 @@ from pathlib import Path
 from common.bus.port import Io
 from services.brain.config import BrainConfig
 from services.brain.journal.pictures import Pictures
-from services.brain.journal.records import Journal, MemoryJournal
+from services.brain.journal.records import Journal
 from services.brain.journal.sqlite import SqliteJournal
 
 
 def open_journal(config: BrainConfig, io: Io) -> Journal:
     """On disk at the configured path, below the process's state directory; in memory when it has none."""
     path = journal_path(config, io)
-    return SqliteJournal(path, io) if path is not None else MemoryJournal()
+    return SqliteJournal(path, io) if path is not None else Journal()
 
 
 def open_pictures(config: BrainConfig, io: Io) -> Pictures:

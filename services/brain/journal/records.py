@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Literal, Protocol
+from typing import Literal
 
 import msgspec
 
@@ -91,48 +91,12 @@ class Checkpoint(msgspec.Struct, rename={"gripper": "hand", "suspended": "put_of
     suspended: "Checkpoint | None" = None
 
 
-class Journal(Protocol):
-    """Missions in order of their start, each with its timeline. Nothing is durable before `save` has returned.
+class Journal:
+    """Missions in order of their start, each with its timeline; the newest only, so that a long run does not grow.
 
-    No method raises because of the medium: a failure is counted, and what was not written is tried again.
-    `boot` numbers the processes that have used this journal, from 1.
+    This one is of a process's lifetime. Of one on disk (`SqliteJournal`) nothing is durable before `save` has returned,
+    and no method raises because of the medium. `boot` numbers the processes that have used it, from 1.
     """
-
-    boot: int
-
-    def begin(self, mission: Mission) -> None:
-        """A mission has begun."""
-
-    def resume(self, mission: Mission) -> None:
-        """Go on with a mission that an earlier process began, or that had been ended by a stop."""
-
-    def note(self, mission_id: str, entry: Entry) -> object:
-        """Add to a mission's timeline, as far as there is room."""
-
-    def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
-        """A mission has ended at robot time `t` [s]."""
-
-    def save(self, checkpoint: Checkpoint) -> bool:
-        """False when the medium refused it."""
-
-    def checkpoint(self) -> Checkpoint | None:
-        """What the process before this one left behind."""
-
-    def missions(self) -> list[Record]:
-        """The newest missions, oldest first, without their timelines."""
-
-    def mission(self, mission_id: str) -> Record | None:
-        """A mission with its timeline; None when it is not known."""
-
-    def last(self) -> Record | None:
-        """The newest mission that has ended."""
-
-    def close(self) -> None:
-        """Let go of the medium."""
-
-
-class MemoryJournal:
-    """The journal of a process's lifetime: the newest missions only, so that a long run does not grow."""
 
     def __init__(self, clock: Callable[[], float] = unix_time) -> None:
         self.boot = 1
@@ -141,6 +105,7 @@ class MemoryJournal:
         self._checkpoint = b""
 
     def begin(self, mission: Mission) -> None:
+        """A mission has begun."""
         self._records[mission.id] = Record(mission.id, mission.command, mission.started, date=self._clock())
         while len(self._records) > KEPT:
             self._records.popitem(last=False)
@@ -150,6 +115,7 @@ class MemoryJournal:
         self._records[record.id] = record
 
     def resume(self, mission: Mission) -> None:
+        """Go on with a mission that an earlier process began, or that had been ended by a stop."""
         record = self._records.get(mission.id)
         if record is None:
             self.begin(mission)
@@ -158,7 +124,7 @@ class MemoryJournal:
             record.stage = record.code = record.spoken = ""
 
     def note(self, mission_id: str, entry: Entry) -> bool:
-        """True if there was room for it."""
+        """Add to a mission's timeline; True if there was room for it."""
         record = self._records.get(mission_id)
         if record is None or len(record.entries) >= ENTRIES_KEPT:
             return False
@@ -166,6 +132,7 @@ class MemoryJournal:
         return True
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
+        """A mission has ended at robot time `t` [s]."""
         record = self._records.get(mission.id)
         if record is not None:
             record.command = mission.command
@@ -174,26 +141,28 @@ class MemoryJournal:
             record.stage, record.code, record.spoken = failure.stage, failure.code, failure.spoken
 
     def save(self, checkpoint: Checkpoint) -> bool:
+        """False when the medium refused it."""
         self._checkpoint = msgspec.json.encode(checkpoint)
         return True
 
     def checkpoint(self) -> Checkpoint | None:
+        """What the process before this one left behind."""
         return msgspec.json.decode(self._checkpoint, type=Checkpoint) if self._checkpoint else None
 
     def missions(self) -> list[Record]:
+        """The newest missions, oldest first, without their timelines."""
         return [msgspec.structs.replace(record, entries=[]) for record in self._records.values()]
 
     def mission(self, mission_id: str) -> Record | None:
+        """A mission with its timeline; None when it is not known."""
         return self._records.get(mission_id)
 
-    def records(self) -> list[Record]:
-        return list(self._records.values())
-
     def last(self) -> Record | None:
+        """The newest mission that has ended."""
         return next((r for r in reversed(self._records.values()) if r.outcome is not None), None)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Let go of the medium."""
 
 
 def last_outcome(journal: Journal) -> MissionOutcome | None:

@@ -11,7 +11,7 @@ import msgspec
 
 from common.bus.port import Io
 from common.time.clock import unix_time
-from services.brain.journal.records import ENTRIES_KEPT, FORMAT, KEPT, Checkpoint, Entry, MemoryJournal, Record
+from services.brain.journal.records import ENTRIES_KEPT, FORMAT, KEPT, Checkpoint, Entry, Journal, Record
 from services.brain.journal.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
 from services.brain.mission.mission import Mission, Outcome
 
@@ -27,7 +27,7 @@ class Unusable(Exception):
     """The file is no journal that this program can read; the message says why."""
 
 
-class SqliteJournal:
+class SqliteJournal(Journal):
     """Survives kill and power cut at any moment. A file that cannot be read is moved aside and a new one is begun.
 
     While the disk refuses (full, gone, read-only) the mission goes on: every refusal is counted, what was refused is
@@ -41,9 +41,9 @@ class SqliteJournal:
         clock: Callable[[], float] = unix_time,
         migrations: Sequence[Sequence[str]] = MIGRATIONS,
     ) -> None:
+        super().__init__(clock)
         self.path, self.errors, self.boot = path, 0, 0
-        self._io, self._clock, self._migrations = io, clock, migrations
-        self._memory = MemoryJournal(clock)
+        self._io, self._migrations = io, migrations
         self._ended = 0
         self._waiting: deque[_Op] = deque(maxlen=WAITING_KEPT)
         self._db: sqlite3.Connection | None = None
@@ -55,10 +55,8 @@ class SqliteJournal:
 
     # --- writing
     def begin(self, mission: Mission) -> None:
-        self._memory.begin(mission)
-        record = self._memory.mission(mission.id)
-        assert record is not None
-        self._waiting.append((BEGIN, _values(record)))
+        super().begin(mission)
+        self._waiting.append((BEGIN, _values(self._records[mission.id])))
 
     def resume(self, mission: Mission) -> None:
         record = self.mission(mission.id)
@@ -67,15 +65,16 @@ class SqliteJournal:
             return
         if record.outcome is not None:
             self._waiting.append((END, (mission.command, None, "", 0.0, mission.goals, "", "", "", mission.id)))
-        self._memory.keep(record)
-        self._memory.resume(mission)
+        self.keep(record)
+        super().resume(mission)
 
-    def note(self, mission_id: str, entry: Entry) -> None:
-        if self._memory.note(mission_id, entry):
+    def note(self, mission_id: str, entry: Entry) -> bool:
+        if room := super().note(mission_id, entry):
             self._waiting.append((ENTRY, _entry(mission_id, entry)))
+        return room
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
-        self._memory.end(mission, outcome, reason, t)
+        super().end(mission, outcome, reason, t)
         failure = mission.ended_by
         why = failure.stage, failure.code, failure.spoken
         self._waiting.append((END, (mission.command, outcome, reason, t, mission.goals, *why, mission.id)))
@@ -127,11 +126,11 @@ class SqliteJournal:
     def missions(self) -> list[Record]:
         rows = self._rows(f"select {FIELDS} from missions order by number desc limit ?", KEPT)
         # What the disk has refused, this process still knows.
-        found = {**{row[0]: Record(*row) for row in reversed(rows)}, **{r.id: r for r in self._memory.missions()}}
+        found = {**{row[0]: Record(*row) for row in reversed(rows)}, **{r.id: r for r in super().missions()}}
         return list(found.values())
 
     def mission(self, mission_id: str) -> Record | None:
-        own = self._memory.mission(mission_id)
+        own = super().mission(mission_id)
         rows = [] if own else self._rows(f"select {FIELDS} from missions where id = ?", mission_id)
         if not rows:
             return own
@@ -141,7 +140,7 @@ class SqliteJournal:
 
     def last(self) -> Record | None:
         rows = self._rows(f"select {FIELDS} from missions where outcome is not null order by number desc limit 1")
-        return self._memory.last() or (Record(*rows[0]) if rows else None)
+        return super().last() or (Record(*rows[0]) if rows else None)
 
     def _rows(self, statement: str, *values: Any) -> list[Any]:
         try:
@@ -209,7 +208,7 @@ class SqliteJournal:
     def _tell_all(self, db: sqlite3.Connection) -> None:
         """Into a new file: what this process knows."""
         db.execute("begin immediate")
-        for record in self._memory.records():
+        for record in self._records.values():
             db.execute(BEGIN, _values(record))
             db.executemany(ENTRY, [_entry(record.id, entry) for entry in record.entries])
         db.execute("commit")
