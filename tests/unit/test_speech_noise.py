@@ -4,12 +4,24 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
+from services.speech.recognise.moonshine import EncodedUtterance, Moonshine
 from services.speech.recognise.recogniser import PreparedUtterance, confidence_of, verdict_of
-from services.speech.recognise.scoring import CANDIDATES, Choice, likeliest, prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import (
+    CANDIDATES,
+    EXPECTED,
+    Choice,
+    Expected,
+    likeliest,
+    prior_cost,
+    rescored,
+    time_scaled,
+)
+from services.speech.recognise.token_trie import BOS, EOS, AnyTokens
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -167,3 +179,34 @@ def test_another_pace_changes_length_and_pitch_alike() -> None:
     assert both.shape == (2, RATE * 16 // 15 + 1) and both[0].any() and not both[1].any()
     alone = PreparedUtterance(tone[None], 0.5).time_scaled()
     assert len(alone) == 2 and alone[0].any() and alone[1].any()
+
+
+def test_the_beginning_of_an_expected_word_counts_by_how_much_there_is_of_it() -> None:
+    cost = Expected(["sofa", "mug"]).cost
+    assert cost(" the so") == -EXPECTED / 2 and cost(" the soldier") == 0.0
+    assert cost(" the sofa") == -EXPECTED and cost(" the mug to the sofa") == -2 * EXPECTED
+    assert cost(" the so to") == cost("") == 0.0
+
+
+class Crowd:
+    """A decoder to which nine words sound likelier than `sofa`, and after which everybody is silent."""
+
+    def empty_cache(self, _variants: int) -> None: ...
+
+    def step(self, _heard: object, cache: None, rows: list[int], last: list[int]) -> tuple[NDArray[np.float32], None]:
+        scores = np.full((len(rows), len(CROWD)), -30.0, np.float32)
+        scores[:, EOS] = -0.1
+        if last == [BOS]:
+            scores[0] = [-30.0, -30.0, -30.0, -2.0, *[-1.0] * 9]
+        return scores, cache
+
+
+CROWD = ["", "<s>", "</s>", " sofa", *(f" w{k}" for k in range(9))]
+
+
+@pytest.mark.parametrize(("words", "found"), [(["sofa"], True), (["chair"], False)])
+def test_no_word_of_like_sound_crowds_out_an_expected_one(words: list[str], found: bool) -> None:
+    model = object.__new__(Moonshine)
+    model.tokens, model._any, model._decoder = CROWD, AnyTokens(CROWD), Crowd()  # type: ignore[assignment]
+    heard = model.freely(EncodedUtterance({}, 1, 4), Expected(words).cost)
+    assert ("sofa" in [sentence.text for sentence in heard]) == found
