@@ -189,7 +189,7 @@ def test_the_beginning_of_an_expected_word_counts_by_how_much_there_is_of_it() -
 
 
 class Crowd:
-    """A decoder to which nine words sound likelier than `sofa`, and after which everybody is silent."""
+    """A decoder to which nine words and a pause sound likelier than `sofa`, and after which everybody is silent."""
 
     def empty_cache(self, _variants: int) -> None: ...
 
@@ -197,16 +197,16 @@ class Crowd:
         scores = np.full((len(rows), len(CROWD)), -30.0, np.float32)
         scores[:, EOS] = -0.1
         if last == [BOS]:
-            scores[0] = [-30.0, -30.0, -30.0, -2.0, *[-1.0] * 9]
+            scores[0] = [-30.0, -30.0, -30.0, -2.0, -0.9, *[-1.0] * 9]
         return scores, cache
 
 
-CROWD = ["", "<s>", "</s>", " sofa", *(f" w{k}" for k in range(9))]
+CROWD = ["", "<s>", "</s>", " sofa", " ", *(f" w{k}" for k in range(9))]
 
 
 @pytest.mark.parametrize(("words", "found"), [(["sofa"], True), (["chair"], False)])
 def test_no_word_of_like_sound_crowds_out_an_expected_one(words: list[str], found: bool) -> None:
     model = object.__new__(Moonshine)
     model.tokens, model._any, model._decoder = CROWD, AnyTokens(CROWD), Crowd()  # type: ignore[assignment]
-    heard = model.freely(EncodedUtterance({}, 1, 4), Expected(words).cost)
-    assert ("sofa" in [sentence.text for sentence in heard]) == found
+    heard = [sentence.text for sentence in model.freely(EncodedUtterance({}, 1, 4), Expected(words).cost)]
+    assert ("sofa" in heard) == found and "" not in heard

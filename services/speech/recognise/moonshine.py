@@ -144,7 +144,7 @@ class Moonshine:
         finished: dict[str, tuple[float, Decoded]] = {}
         for _ in range(utterance.limit):
             for row, hypothesis in enumerate(beam):
-                if hypothesis.text and trie.is_final(hypothesis.state):
+                if hypothesis.text.strip() and trie.is_final(hypothesis.state):
                     _finish(hypothesis, float(scores[row, EOS]), prior, finished)
             leader = max((worth for worth, _ in finished.values()), default=-np.inf)
             kept = self._continued(beam, scores, trie, begun, leader, width)
