@@ -112,6 +112,11 @@ class Receptacle(Strict, frozen=True):
         """The usable extent on the floor plan."""
         return Rectangle(self.center[0], self.center[1], self.size[0], self.size[1], self.yaw)
 
+    @property
+    def spoken(self) -> str:
+        """How people say where a thing is: `on the table`, `in the bin`."""
+        return f"{'in' if self.depth else 'on'} the {self.name}"
+
     def contains(self, x: float, y: float, margin: float = 0.0) -> bool:
         """True when the point (x, y) [map] lies within the usable extent, or at most `margin` [m] beyond its sides."""
         return self.outline.contains(x, y, margin)

@@ -99,9 +99,7 @@ def judge_placement(
     # What fell may look like another kind since, and has to stand as both.
     kinds = {rest.asked} if rest.asked else {seen} if spec else {seen, rest.taken}
     on = household.receptacle(pose.on) or household.resting_place(pose.position)
-    where = f"on the {on.name}" if on else "on the floor"
-    if on and on.depth:
-        where = f"in the {on.name}"
+    where = on.spoken if on else "on the floor"
     tilt = tilt_of(pose)
     if spec is None and not tilt and any(laid_on_a_side(kind, pose.size) for kind in kinds):
         # A box on its side is seen as a book that lies as it should.

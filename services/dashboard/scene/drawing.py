@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array, matrix_quat, quat_matrix
+from common.geometry import Array, quat_matrix
 
 if TYPE_CHECKING:
     from common.robot.model import Hand
@@ -236,8 +236,3 @@ def _about(axis: Array, angle: float) -> Array:
             [z * x * d - y * s, z * y * d + x * s, c + z * z * d],
         ]
     )
-
-
-def quaternion(turn: Array) -> tuple[float, float, float, float]:
-    """The quaternion (w, x, y, z) of a rotation matrix."""
-    return matrix_quat(turn)

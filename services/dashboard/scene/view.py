@@ -6,11 +6,11 @@ import numpy as np
 import viser
 
 from common import messages as m
-from common.geometry import Array, Pose2, transformed
+from common.geometry import Array, Pose2, matrix_quat, transformed
 from common.kinds import kind_of
 from common.naming.colours import COLOURS, UNKNOWN_COLOUR
 from common.robot.lidar import rays_of
-from services.dashboard.scene.drawing import Drawing, Mesh, posture, quaternion
+from services.dashboard.scene.drawing import Drawing, Mesh, posture
 
 GHOST = 0.3
 """Opacity of an object that was not seen for long; chosen: visible, yet not to be mistaken for a fresh sighting."""
@@ -76,7 +76,7 @@ class View:
                     node = self._mesh(path, link.mesh)
                 else:
                     node = self._scene.add_frame(path, show_axes=False)
-                node.position, node.wxyz = place, quaternion(turn)
+                node.position, node.wxyz = place, matrix_quat(turn)
                 self.nodes[path], self._at[path] = node, (place, turn)
             for camera in found.cameras:
                 self.nodes[f"camera {camera.name}"] = self._scene.add_camera_frustum(
@@ -87,7 +87,7 @@ class View:
                     scale=FRUSTUM if camera.name == "head" else FRUSTUM / 2,
                     color=(250, 200, 60),
                     position=camera.position,
-                    wxyz=quaternion(camera.rotation),
+                    wxyz=matrix_quat(camera.rotation),
                 )
             self._paths = paths
 
@@ -122,7 +122,7 @@ class View:
             if np.abs(place - before[0]).max() > STILL:
                 self.nodes[path].position = place
             if np.abs(turn - before[1]).max() > STILL:
-                self.nodes[path].wxyz = quaternion(turn)
+                self.nodes[path].wxyz = matrix_quat(turn)
             self._at[path] = place, turn
 
     # --- what it senses and believes

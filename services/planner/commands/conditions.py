@@ -71,8 +71,7 @@ def _look_into(builder: PlanBuilder, slots: Slots) -> tuple[list[BelievedObject]
         there = [t for t in known if fits(t)]
         if not there:
             builder.look_at(surfaces)
-        where = f"{'in' if place.receptacle is None or place.receptacle.depth else 'on'} the {place.name}"
-        return there, f"{none_of(phrase)} {where}"
+        return there, f"{none_of(phrase)} {place.spoken}"
     meant = [m.object for m in referents(builder, words)]
     if not any(t.seen for t in meant):
         builder.search_first([PlanStep(action="find", object=meant[0].label)])

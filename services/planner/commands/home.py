@@ -102,7 +102,7 @@ def belongs(builder: PlanBuilder, slots: Slots) -> None:
         to = found[0]
     said = " ".join(slots["thing"])
     verb = "go" if phrase.plural else "goes"
-    builder.say(f"{said[:1].upper()}{said[1:]} {verb} {_spoken(builder, to.name)}.")
+    builder.say(f"{said[:1].upper()}{said[1:]} {verb} {to.spoken}.")
 
 
 def _goes(builder: PlanBuilder, things: str) -> list[Receptacle]:
@@ -118,13 +118,7 @@ def _goes(builder: PlanBuilder, things: str) -> list[Receptacle]:
 
 
 def _on(builder: PlanBuilder, to: list[str]) -> str:
-    return next((_spoken(builder, r.name) for name in to if (r := builder.world.household.receptacle(name))), "nowhere")
-
-
-def _spoken(builder: PlanBuilder, name: str) -> str:
-    r = builder.world.household.receptacle(name)
-    assert r is not None
-    return f"{'in' if r.depth else 'on'} the {name}"
+    return next((r.spoken for name in to if (r := builder.world.household.receptacle(name))), "nowhere")
 
 
 # --- where things were
@@ -197,5 +191,5 @@ def _place(builder: PlanBuilder, s: Sighting) -> str:
     household = builder.world.household
     r, room = household.receptacle(s.part) if s.part else None, household.room_at(s.position[0], s.position[1])
     name = r.name if r is not None else s.part or "floor"
-    on = f"{'in' if r is not None and r.depth else 'on'} the {name}"
+    on = r.spoken if r is not None else f"on the {name}"
     return on if room is None or room.name.split()[0] in name else f"{on} in the {room.name}"

@@ -103,7 +103,7 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
     builder.look_at(surfaces)
     fits = fitting(builder, phrase)
     there = [t for t in known if fits(t)]
-    at = f"{'in' if place.receptacle is None or place.receptacle.depth else 'on'} the {place.name}"
+    at = place.spoken
     if there:
         builder.say(f"Yes, there {be(there)} {enumeration([a(t) for t in there])} {at}.")
     else:

@@ -15,8 +15,8 @@ def place_of(builder: PlanBuilder, item: BelievedObject) -> str:
     receptacle, room = builder.world.receptacle_of(item), builder.world.room_of(item)
     if receptacle is None:
         return f"in the {room}" if room else "somewhere I cannot name"
-    spoken = f"{'in' if receptacle.depth else 'on'} the {receptacle.name}"
-    return spoken if not room or room.split()[0] in receptacle.name else f"{spoken} in the {room}"
+    near = not room or room.split()[0] in receptacle.name
+    return receptacle.spoken if near else f"{receptacle.spoken} in the {room}"
 
 
 def inventory(builder: PlanBuilder, known: list[BelievedObject]) -> str:
@@ -29,10 +29,9 @@ def inventory(builder: PlanBuilder, known: list[BelievedObject]) -> str:
 
 
 def told(there: list[BelievedObject], place: Spot) -> str:
-    where = "in" if place.receptacle is None or place.receptacle.depth else "on"
     if not there:
-        return f"I see nothing that I know {where} the {place.name}."
-    return f"{capital(enumeration([a(t) for t in there]))} {be(there)} {where} the {place.name}."
+        return f"I see nothing that I know {place.spoken}."
+    return f"{capital(enumeration([a(t) for t in there]))} {be(there)} {place.spoken}."
 
 
 def not_after_moving(builder: PlanBuilder) -> None:

@@ -73,6 +73,11 @@ class Spot(msgspec.Struct, frozen=True):
     room: bool = False
     home: bool = False
 
+    @property
+    def spoken(self) -> str:
+        """How people say where a thing is: `on the table`, `in the kitchen`."""
+        return self.receptacle.spoken if self.receptacle is not None else f"in the {self.name}"
+
 
 def singulars(phrase: str) -> list[tuple[str, bool]]:
     """What a noun may be the plural of, and whether it is; the noun itself first."""
