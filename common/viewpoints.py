@@ -26,6 +26,8 @@ USED = 0.92
 """Share of the picture's angles that counts [-]; chosen: what the picture's edge cuts off is not recognised."""
 REACH = 2.2
 """Floor distance up to which an object is recognised [m]; chosen: well within the 3 m of bench.perception."""
+NEAR = 1.4
+"""The same for what lies flat, such as a comb [m]; chosen: 4 mm stand out of the noise of depth there."""
 NEAREST = 0.2
 """Depth from which the camera sees [m]; chosen: the near limit of common RGB-D cameras."""
 SPACING = 0.12
@@ -104,8 +106,13 @@ class Viewpoints:
         """Which points (v, p) each of the poses shows."""
         return np.array([shown for _, shown in self._views], bool).reshape(len(self._views), len(self.points))
 
-    def visible(self, pose: Pose2) -> Mask:
-        """Which points (p,) the camera sees from a base pose: in the picture, near enough, nothing tall between."""
+    @cached_property
+    def near(self) -> NDArray[np.bool_]:
+        """Which of these points (v, p) are so near that flat things are recognised."""
+        return np.array([self.visible(pose, NEAR) for pose in self.poses], bool).reshape(self.shows.shape)
+
+    def visible(self, pose: Pose2, reach: float = REACH) -> Mask:
+        """Which points (p,) the camera sees from a base pose: in the picture, within `reach`, nothing tall between."""
         camera = self._camera
         heading = pose[2] + camera.yaw
         cos, sin = math.cos(heading), math.sin(heading)
@@ -116,7 +123,7 @@ class Viewpoints:
         up = self.points[:, 2] - camera.z
         tilt, drop = math.cos(camera.pitch), math.sin(camera.pitch)
         depth, down = ahead * tilt - up * drop, -(ahead * drop + up * tilt)
-        inside: Mask = (depth > NEAREST) & (np.hypot(to[:, 0], to[:, 1]) < REACH)
+        inside: Mask = (depth > NEAREST) & (np.hypot(to[:, 0], to[:, 1]) < reach)
         inside &= (np.abs(left) < depth * self._across) & (np.abs(down) < depth * self._upright)
         for screen in self._screens:
             if not inside.any():
@@ -124,11 +131,11 @@ class Viewpoints:
             inside[inside] = ~_crosses(eye, self.points[inside, :2], screen)
         return inside
 
-    def covered(self, looked_from: Collection[Pose2]) -> Mask:
-        """Which points (p,) one of the poses shows."""
+    def covered(self, looked_from: Collection[Pose2], reach: float = REACH) -> Mask:
+        """Which points (p,) one of the poses shows within `reach` [m]."""
         seen = np.zeros(len(self.points), bool)
         for pose in looked_from:
-            seen |= self.visible(pose)
+            seen |= self.visible(pose, reach)
         return seen
 
     def turn(self, pose: Pose2, worth: Array) -> Pose2 | None:
@@ -145,15 +152,17 @@ class Viewpoints:
         cost: Callable[[Pose2], float],
         free: Callable[[Pose2], bool],
         likelihood: Array | None = None,
+        near: bool = False,
     ) -> Pose2 | None:
         """The pose, not yet `tried`, that shows the most for its way; None when none is worth it.
 
         `worth` (p,) is what each point counts, `cost` the way to a pose [m], inf where none leads, `free` whether the
         base can stand there. `likelihood` (p,) that what is looked for is at a point, the mean being 1, decides what
-        is looked at first, and nothing about what is looked at in the end.
+        is looked at first, and nothing about what is looked at in the end. `near`: only what is near counts.
         """
-        news = self.shows @ worth
-        gains = news if likelihood is None else self.shows @ (worth * likelihood)
+        shows = self.near if near else self.shows
+        news = shows @ worth
+        gains = news if likelihood is None else shows @ (worth * likelihood)
         best, best_score = None, 0.0
         for n in np.flatnonzero(news >= LEAST_GAIN).tolist():
             pose = self.poses[n]

@@ -146,6 +146,9 @@ def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
     unlike = NO_KIND - (NO_KIND - ROUGHLY) * _shaped(o)
     seen = {*kinds} if shades else {k for k in kinds if k not in SHAPELESS or k in o.kinds}
     kind = max((_has_kind(k, o) if k in seen else unlike for k in kinds), default=0.0)
+    if o.kind in SHAPELESS and kinds:
+        # A teapot with its spout ahead is no mug, jar or can.
+        kind = max(kind, unlike)
     return kind if packed else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
 
 

@@ -238,3 +238,9 @@ def test_what_has_nothing_of_the_colour_of_what_it_is_made_of_is_asked_about_lat
     red, black = (measured(f"{c} bottle", {"bottle": 1.0}, {c: 1.0}) for c in ("red", "black"))
     assert partly("tomato sauce", red, HOUSEHOLD) > LIKELY > partly("tomato sauce", black, HOUSEHOLD) > LEAST
     assert partly("bbq sauce", black, HOUSEHOLD) == partly("tomato sauce", red, HOUSEHOLD)
+
+
+def test_a_thing_of_no_shape_may_be_what_is_told_to_look_like_a_mug() -> None:
+    teapot = measured("blue toy", {"toy": 0.56, "tool": 0.31, "carton": 0.13}, {"blue": 1.0})
+    assert LEAST < partly("teapot", teapot, HOUSEHOLD) < LIKELY
+    assert partly("teapot", measured("blue box", {"box": 1.0}, {"blue": 1.0}), HOUSEHOLD) == 0.0

@@ -11,6 +11,7 @@ from common.geometry import Array
 from common.kinds import KINDS
 from services.perception.shapes import known as shapes
 from services.perception.shapes.least_squares import solve
+from services.perception.shapes.primitives import Silhouette, fit
 
 SIZES: dict[str, Vec3] = {
     "mug": (0.074, 0.074, 0.095), "bowl": (0.14, 0.14, 0.06), "bottle": (0.066, 0.066, 0.22),
@@ -70,3 +71,13 @@ def test_ends_of_a_box_turn_with_it() -> None:
     for k in range(3):
         ahead = shapes.end_bearings(size, p + np.eye(3)[k] * 1e-6, camera, -0.2)[0]
         assert (ahead - bearings) / 1e-6 == pytest.approx(slopes[:, k], abs=1e-3)
+
+
+@pytest.mark.parametrize(("drawn_to", "found"), [(0.26, 0.26), (0.60, 0.22)])
+def test_a_shape_does_not_grow_far_beyond_what_is_seen(drawn_to: float, found: float) -> None:
+    points, nowhere = np.zeros((100, 3)), Silhouette(np.zeros(2), 0.0, np.full(2, math.nan), 1.0)
+    solution = fit(
+        lambda p, points: np.repeat(p - drawn_to, len(points), axis=1), lambda outline, p: np.empty((len(p), 0)),
+        np.array([0.22]), points, nowhere, 0.0015, (np.array([0.22]), np.array([0.02])),
+    )  # fmt: skip
+    assert solution.p[0] == pytest.approx(found, abs=0.01)

@@ -11,7 +11,7 @@ from common import messages as m
 from common.floor_plan import Box, FloorPlan, Place, Receptacle, Wall
 from common.geometry import Pose2
 from common.household import Household, load_household
-from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
+from common.viewpoints import NEAR, NOMINAL, REACH, Viewpoints, viewpoints_of
 from common.whereabouts import LEAST, spread
 from services.brain.world import viewpoint_search
 from services.sim.unit import head_camera
@@ -30,6 +30,21 @@ def test_the_search_shows_every_surface_and_ends() -> None:
         at = view
     assert len(looked_from) < 20
     assert VIEWPOINTS.covered(looked_from).mean() > 0.97
+
+
+def test_what_may_lie_flat_is_looked_for_from_near_in_the_end_and_where_it_is_told_to_be_first() -> None:
+    looked_from: list[Pose2] = []
+    while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, flat=True)) is not None:
+        looked_from.append(view)
+    assert VIEWPOINTS.covered(looked_from, NEAR)[VIEWPOINTS.listed].mean() > 0.9
+    told = VIEWPOINTS.surface == VIEWPOINTS.surface[0]
+    far: list[Pose2] = []
+    while not VIEWPOINTS.covered(far, NEAR)[told].mean() > 0.9:
+        view = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, far, told=told, flat=True)
+        assert view is not None and VIEWPOINTS.visible(view)[told].any()
+        far.append(view)
+    assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from) is None
+    assert len(far) < len(looked_from) / 4
 
 
 def test_every_view_shows_something_new() -> None:

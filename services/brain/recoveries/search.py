@@ -13,7 +13,7 @@ from services.brain.steps.leaf import Settle
 from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Retry, Selector, Sequence
 
-VIEWPOINTS = (2, 5, 9)
+VIEWPOINTS = (2, 5, 14)
 """Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first)."""
 AFTER_A_GLANCE = (
     Recovery("several_match", several_match, ask_which),

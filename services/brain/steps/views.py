@@ -15,6 +15,7 @@ from services.brain.mission.remarks import PERSON
 from services.brain.steps.leaf import SendGoal
 from services.brain.steps.motion import drive_to
 from services.brain.world import viewpoint_search
+from services.brain.world.placement import may_lie_flat
 
 HELD_UP = (PERSON, "WAITING", "GIVING_WAY", "BACKING_OFF")
 """Navigation's codes while somebody or something keeps it from getting on."""
@@ -73,9 +74,9 @@ class MoveToViewpoint(GoAndLook):
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
         looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
         if self._elsewhere:
-            likely = ctx.likelihood(self._item)
+            likely, flat = ctx.likelihood(self._item), may_lie_flat(self._item, ctx.io.household)
             self.view = viewpoint_search.elsewhere(
-                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told
+                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told, flat
             )
         else:
             self.view = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)

@@ -153,6 +153,11 @@ def kind_meant(phrase: str, household: Household) -> str:
     return next((kind for kind in named if kind), "")
 
 
+def may_lie_flat(phrase: str, household: Household) -> bool:
+    """A phrase names nothing that stands or is round: a comb, the scissors."""
+    return kind_meant(phrase, household) in ("", "tool", "toy", "book")
+
+
 def judge_absence(label: str, target: str, household: Household) -> Finding:
     """Judge that an object is not to be seen. Into a bin the camera hardly looks: there the hand's word counts."""
     wanted = household.receptacle(target)

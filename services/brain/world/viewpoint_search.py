@@ -14,7 +14,8 @@ from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from common.grid_graph import graph_of, nearest_free
-from common.viewpoints import Mask, Viewpoints
+from common.viewpoints import NEAR, Mask, Viewpoints
+from common.viewpoints import REACH as FAR
 
 Point = tuple[float, float]
 RESOLUTION = 0.05
@@ -43,12 +44,14 @@ def elsewhere(
     unreached: Collection[Pose2] = (),
     likelihood: Array | None = None,
     told: Mask | None = None,
+    flat: bool = False,
 ) -> Pose2 | None:
     """The viewpoint that shows most that is new for the way there; None when everything has been looked at.
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
-    takes it. The points (p,) where it is `told` to be come first, sofas and beds last.
+    takes it. The points (p,) where it is `told` to be come first, sofas and beds last; where it may lie `flat` these
+    points, and in the end the other tables and shelves, are looked at from near as well.
     """
     ways = Ways(floor_plan, (here[0], here[1]))
 
@@ -61,21 +64,21 @@ def elsewhere(
     def fits(to: Pose2) -> bool:
         return math.isfinite(cost(to))
 
-    unseen, failed = _unseen(viewpoints, looked_from), Counter(unreached)
-    orders = (
-        [unseen * viewpoints.listed, unseen] if told is None else [unseen * told, unseen * viewpoints.listed, unseen]
-    )
+    unseen, far, failed = _unseen(viewpoints, looked_from), _unseen(viewpoints, looked_from, NEAR), Counter(unreached)
+    at = told if told is not None else np.zeros(len(unseen), bool)
+    orders = [(unseen * at, False), (far * at, True), (unseen * viewpoints.listed, False), (unseen, False)]
+    orders = [*orders, (far * viewpoints.listed, True)] if flat else [o for o in orders if not o[1]]
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        for worth, free in product(orders, (ample, fits)):
-            if (found := viewpoints.best(worth, tried, cost, free, likelihood)) is not None:
+        for (worth, near), free in product(orders, (ample, fits)):
+            if (found := viewpoints.best(worth, tried, cost, free, likelihood, near)) is not None:
                 return found
     return None
 
 
-def _unseen(viewpoints: Viewpoints, looked_from: Collection[Pose2]) -> Array:
-    """1 for each point (p,) that no look has shown, 0 for the others."""
-    unseen: Array = (~viewpoints.covered(looked_from)).astype(float)
+def _unseen(viewpoints: Viewpoints, looked_from: Collection[Pose2], reach: float = FAR) -> Array:
+    """1 for each point (p,) that no look has shown within `reach` [m], 0 for the others."""
+    unseen: Array = (~viewpoints.covered(looked_from, reach)).astype(float)
     return unseen
 
 

@@ -23,6 +23,9 @@ ROBUST = 0.004
 """Distance [m] beyond which a point counts less. Chosen: twice the depth noise at 1.2 m."""
 TRIES = 12
 """Steps of the solver."""
+STRAYED = 4.0
+"""Standard deviations beyond what is expected at which the solver went astray, and the start is kept: a brush whose
+handle slopes down is no box of twice its length."""
 INNER = 0.012
 """Distance [m] behind the surface beyond which a point is of the inside of a hollow object, and pulls nothing."""
 STRAYS = 0.015
@@ -190,6 +193,8 @@ def fit(
         return apart[0], ((apart[1:] - apart[0]) / STEP).T
 
     p = solve(off, start, max(ROBUST, 1.5 * noise), TRIES)[0]
+    if prior is not None and (p - prior[0] > STRAYED * prior[1]).any():
+        p = start
     apart, slopes = off(p)
     left = np.abs(apart[: len(points)])
     # Neighbouring points share their noise: a fifth of them counts.
