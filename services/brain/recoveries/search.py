@@ -12,9 +12,11 @@ from services.brain.steps.find import LocateObject, ReportNotFound
 from services.brain.steps.leaf import Settle
 from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Retry, Selector, Sequence
+from services.brain.world.placement import may_lie_flat
 
-VIEWPOINTS = (2, 5, 14)
-"""Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first)."""
+VIEWPOINTS, FROM_NEAR = (2, 5, 9), 9
+"""Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first), and how many more
+the last has where something may lie flat."""
 AFTER_A_GLANCE = (
     Recovery("several_match", several_match, ask_which),
     Recovery("look_closer", unsure, look_closer),
@@ -38,7 +40,8 @@ def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_GLANCE, task),
         name=f"view of {label}",
     )
-    retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1
+    last = number == ctx.config.max_retry_attempts and may_lie_flat(task.item, ctx.io.household)
+    retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1 + FROM_NEAR * last
     return Retry("attempt", ctx, look, retries, again=lambda: more_to_see(ctx), name=label, free=lambda: kept_away(ctx))
 
 
