@@ -4,7 +4,6 @@ import argparse
 import math
 from pathlib import Path
 
-import msgspec
 import numpy as np
 from rich.console import Console
 from rich.live import Live
@@ -24,19 +23,14 @@ from common.config import config_dir
 from common.files.map_file import (
     FREE,
     HOUSEHOLD,
-    MAP,
     OCCUPIED,
     PICTURE,
-    SURFACES,
     UNKNOWN,
     GridMap,
     MapError,
-    named_picture,
     picture,
-    surface_rows,
-    write_map,
+    write_home,
 )
-from common.files.plan_file import to_toml
 from common.floor_plan import FloorPlan
 from common.household import Household, load_household, load_words, mapped
 from common.household_edits import edited
@@ -214,10 +208,7 @@ def plan_to_map(world: str, out: Path) -> Household:
         household = mapped(load_scene(world), load_words(config_dir()))
         out.mkdir(parents=True, exist_ok=True)
         grid = GridMap(drawn(household), RESOLUTION, household.low)
-        write_map(out, grid, MAP)
-        (out / SURFACES).write_bytes(msgspec.json.format(msgspec.json.encode(surface_rows(household)), indent=1))
-        (out / HOUSEHOLD).write_text(to_toml(household), encoding="utf-8")
-        named_picture(grid, household).save(out / PICTURE)
+        write_home(out, grid, household)
     except (SceneError, MapError) as error:
         raise CliError(str(error)) from None
     except OSError as error:

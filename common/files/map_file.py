@@ -7,11 +7,13 @@ Source: nav2_map_server, modes `trinary` and `scale`; origin is the pose of the 
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from common.files.atomic_file import replace
+from common.files.plan_file import to_toml
 from common.floor_plan import FloorPlan
 
 MAP, SURFACES, HOUSEHOLD, PICTURE = "map", "surfaces.json", "household.toml", "map.png"
@@ -65,6 +67,19 @@ def write_map(directory: Path, grid: GridMap, name: str = "map") -> Path:
     path = directory / f"{name}.yaml"
     _replace(path, text.encode())
     return path
+
+
+def write_home(directory: Path, grid: GridMap, household: FloorPlan) -> None:
+    """All that says what a home is like: map, surfaces, household, and a picture for people.
+
+    Raises:
+        MapError, OSError: they cannot be written.
+    """
+    write_map(directory, grid, MAP)
+    surfaces = msgspec.json.format(msgspec.json.encode(surface_rows(household)), indent=1)
+    _replace(directory / SURFACES, surfaces)
+    _replace(directory / HOUSEHOLD, to_toml(household).encode())
+    named_picture(grid, household).save(directory / PICTURE)
 
 
 def _replace(path: Path, data: bytes) -> None:

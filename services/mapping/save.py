@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.files.atomic_file import replace
-from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, named_picture, surface_rows, write_map
-from common.files.plan_file import to_toml
+from common.files.map_file import GridMap, write_home
 from common.geometry import Array, compose
 from common.household import Household
 from services.mapping.barriers import Met, glass
@@ -53,15 +52,12 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
         raise SaveError(f"{directory}: {error.strerror}") from None
     part, corner = mapper.grid.known(states)
     grid = GridMap(part, RESOLUTION, corner)
-    write_map(directory, grid, MAP)
-    _write(
-        directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans, mapper.trajectory.runs))
-    )
-    _write(directory / SURFACES, _json(surface_rows(household)))
-    _write(directory / HOUSEHOLD, to_toml(household).encode())
+    write_home(directory, grid, household)
+    rows = graph_rows(mapper.trajectory.graph, mapper.trajectory.scans, mapper.trajectory.runs)
+    if why := replace(directory / GRAPH, msgspec.json.format(msgspec.json.encode(rows), indent=1)):
+        raise SaveError(f"{directory / GRAPH}: {why}")
     with (directory / EVIDENCE).open("wb") as file:
         np.savez_compressed(file, **_evidence(mapper))
-    named_picture(grid, household).save(directory / PICTURE)
     return Saved(str(directory), len(household.receptacles))
 
 
@@ -178,12 +174,3 @@ def _met(file: dict[str, Array]) -> list[tuple[int, Met]]:
     """What held the robot up; a map of an older version has none."""
     rows = zip(file["met_at"], file["met"], strict=True) if "met" in file else ()
     return [(int(at), Met((float(x), float(y)), (float(u), float(v)))) for at, (x, y, u, v) in rows]
-
-
-def _json(rows: Any) -> bytes:
-    return msgspec.json.format(msgspec.json.encode(rows), indent=1)
-
-
-def _write(path: Path, data: bytes) -> None:
-    if why := replace(path, data):
-        raise SaveError(f"{path}: {why}")
