@@ -85,6 +85,16 @@ def test_a_box_that_was_seen_into_is_none_and_has_a_hoop_to_be_held_by() -> None
     assert found[0].pose.position[2] > AT[2] + 0.02
 
 
+def test_the_rectangle_around_a_flat_tool_is_no_box() -> None:
+    """Of a spatula most of it is empty; as a box it is too wide, and only held over an edge."""
+    blade = plane((-0.13, -0.03), (-0.035, 0.035), (0.0045, 0.0045))
+    tool = np.concatenate([blade, plane((-0.03, 0.13), (-0.009, 0.009), (0.0045, 0.0045))[::3]])
+    book = plane((-0.13, 0.13), (-0.035, 0.035), (0.0045, 0.0045))
+    assert explained(seen("box", (0.26, 0.07, 0.009), book))
+    found = believed(seen("box", (0.26, 0.07, 0.009), tool))
+    assert found.family == "irregular" and grasps(found)
+
+
 def test_a_vessel_is_seen_all_around() -> None:
     """Two legs of a bracket are not the rim of a bowl."""
     wall = around([(0.04, -0.025), (0.06, 0.025)], 24, half=False)

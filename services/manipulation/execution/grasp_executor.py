@@ -166,7 +166,7 @@ def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]], free: Array)
         back = back_along(path, robot.joints)
         try:
             if path is plan.lift:
-                yield from set_down(robot, back, robot.guard(free, way="down"), 0.5)
+                yield from set_down(robot, back, robot.guard(free, way="down"))
             else:
                 yield from robot.follow(back, robot.config.joint_speed * 0.5)
         except Failure as failure:

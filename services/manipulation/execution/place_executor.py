@@ -169,7 +169,7 @@ def lower(robot: Robot, plan: PlacePlan, held: GraspedObject, falls: bool) -> St
     feel = planner_of(robot).reaction
     rest = yield from robot.at_rest()
     try:
-        yield from set_down(robot, plan.lower, robot.guard(rest), 0.4)
+        yield from set_down(robot, plan.lower, robot.guard(rest))
     except Failure as failure:
         if failure.code != TOUCHED:
             raise

@@ -1,16 +1,15 @@
-"""Something in the hand goes down to its surface: slowly where it may meet it."""
+"""Something in the hand goes down to its surface: slowly, since it may meet it anywhere."""
 
 from collections.abc import Sequence
 
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.touch import TOUCHED, Guard
-from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
+from services.manipulation.execution.robot import Failure, Robot, Steps
 
-SLOWLY = 0.055
-"""Height [m] above the end of the way down from which it goes slowly: what is held may hang so much lower. Chosen: an
-apple that had slid in the hand met the tray 49 mm early, with 82 N."""
 SETTING_DOWN = 0.12
-"""Speed of that, in joint speeds: some 6 cm/s of the hand. At 0.4 a bottle of 0.4 kg met the tray with 100 N."""
+"""Speed of the whole way down, in joint speeds: some 6 cm/s of the hand, 1.3 s for the 8 cm of a placement. Chosen: at
+0.4 a bottle of 0.4 kg met the tray with 100 N, and what is held may hang lower by more than can be told: an apple met
+it 49 mm early, a whisk and a tray that had swung farther than 55."""
 
 PROBING = 0.06
 """Speed of the way on down where nothing was felt, in joint speeds: some 3 cm/s of the hand."""
@@ -19,18 +18,13 @@ STANDING = 10.0
 most 4 N then, and the surface bears three times as much."""
 
 
-def set_down(robot: Robot, path: Sequence[Array], guard: Guard | None, share: float) -> Steps[None]:
-    """Follow a joint path downwards, with `share` of the joint speed above where it goes slowly.
+def set_down(robot: Robot, path: Sequence[Array], guard: Guard | None) -> Steps[None]:
+    """Follow a joint path downwards.
 
     Raises:
         Failure: as `Robot.follow`.
     """
-    speed, reaction = robot.config.joint_speed, planner_of(robot).reaction
-    heights = [float(reaction.position(q)[2]) for q in path]
-    near = next(n for n, height in enumerate(heights) if height <= heights[-1] + SLOWLY)
-    if near:
-        yield from robot.follow(path[: near + 1], speed * share, guard)
-    yield from robot.follow(path[near:], speed * SETTING_DOWN, guard)
+    yield from robot.follow(path, robot.config.joint_speed * SETTING_DOWN, guard)
 
 
 def probe(robot: Robot, path: Sequence[Array], rest: Array) -> Steps[bool]:

@@ -28,6 +28,9 @@ upper side a quarter lies there."""
 WITHIN, BELOW, INSIDE = 0.5, 0.015, 0.25
 """Share of the half extents of a box that is its middle, how far [m] below its top what was seen there is its inside,
 and the share of such points from which it is open: of a lid one sees nothing but its upper face."""
+PER_CELL, COVERED = 4, 0.8
+"""Points for each cell into which the upper face of a flat box is divided, and the share of cells with some from which
+it was seen: of the rectangle around a spatula two thirds."""
 BESIDE, BEFORE = 0.006, 0.045
 """How far [m] beside the pads, and before their middle, what is seen counts as between them: points lie 7 mm apart, and
 of what the hand comes to from its seen side only the front may be seen."""
@@ -48,7 +51,7 @@ def explained(target: Target) -> bool:
         return False
     if target.shape in ("round", "bowl") and _is_ring(target.points, target.size):
         return False
-    if target.shape == "box" and _is_open(target):
+    if target.shape == "box" and (_is_open(target) or _covered(target) < COVERED):
         return False
     return float(np.mean(_beside_shape(target))) < UNEXPLAINED
 
@@ -78,6 +81,17 @@ def _is_open(target: Target) -> bool:
     seen, half = own_points(target), np.array(target.size) / 2
     middle = seen[(np.abs(seen[:, :2]) < WITHIN * half[:2]).all(axis=1), 2]
     return len(middle) >= LEAST_SEEN and float(np.mean(middle < half[2] - BELOW)) > INSIDE
+
+
+def _covered(target: Target) -> float:
+    """Share of the upper face of a flat box on which something was seen; 1 of what is not flat."""
+    level = np.array(target.size[:2])
+    if target.size[2] > level.min() / 2:
+        return 1.0
+    seen = own_points(target)[:, :2]
+    cells = np.maximum(1, level / math.sqrt(PER_CELL * float(np.prod(level)) / len(seen))).astype(int)
+    index = np.clip(np.floor((seen / level + 0.5) * cells), 0, cells - 1)
+    return len(np.unique(index, axis=0)) / int(np.prod(cells))
 
 
 def believed(target: Target) -> Target:
