@@ -12,6 +12,8 @@ from services.perception.segments.segment import Segment, Surface
 from services.perception.segments.separate import pieces
 from services.perception.views.view import View
 
+SIDE = 200
+"""Of the picture [px]."""
 FLOOR, FOCAL = 0.72, 400.0
 EYE = np.array([0.0, 0.0, 1.35])
 Solid = tuple[float, float, float, float, tuple[int, int, int]]
@@ -25,12 +27,28 @@ def rotation() -> Array:
     return np.stack([right, np.cross(ahead, right), ahead], axis=1)
 
 
+def looks() -> Array:
+    """Directions (h, w, 3) [map] in which the pixels look."""
+    u, v = np.meshgrid(np.arange(SIDE) + 0.5 - SIDE / 2, np.arange(SIDE) + 0.5 - SIDE / 2)
+    return np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
+
+
+def measured(depth: Array, rgb: Array) -> tuple[View, Segment]:
+    """A view with the camera's noise, and all that is seen in it as one segment."""
+    seen = np.isfinite(depth)
+    rng = np.random.default_rng(1)
+    depth[seen] *= 1 + rng.normal(0.0, 0.0015, np.count_nonzero(seen))
+    depth[~seen] = 0.0
+    view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (SIDE / 2, SIDE / 2), EYE, rotation())
+    rows, columns = np.nonzero(seen)
+    points = view.points[rows, columns].astype(np.float64)
+    return view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True))
+
+
 def picture(cans: list[Solid], band: bool = False) -> tuple[View, Segment]:
     """Cans cast by rays, 200 x 200, with the noise of a bought camera; all of them are one segment."""
-    h = w = 200
-    u, v = np.meshgrid(np.arange(w) + 0.5 - w / 2, np.arange(h) + 0.5 - h / 2)
-    rays = np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
-    depth, rgb = np.full((h, w), np.inf), np.zeros((h, w, 3), np.uint8)
+    rays = looks()
+    depth, rgb = np.full((SIDE, SIDE), np.inf), np.zeros((SIDE, SIDE, 3), np.uint8)
     for x, y, r, high, colour in cans:
         with np.errstate(divide="ignore", invalid="ignore"):
             lid = (FLOOR + high - EYE[2]) / rays[..., 2]
@@ -44,14 +62,7 @@ def picture(cans: list[Solid], band: bool = False) -> tuple[View, Segment]:
         depth[nearer], rgb[nearer] = far[nearer], colour
         if band:
             rgb[nearer & (z > 0.3 * high) & (z < 0.7 * high)] = (240, 240, 235)
-    seen = np.isfinite(depth)
-    rng = np.random.default_rng(1)
-    depth[seen] *= 1 + rng.normal(0.0, 0.0015, np.count_nonzero(seen))
-    depth[~seen] = 0.0
-    view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (w / 2, h / 2), EYE, rotation())
-    rows, columns = np.nonzero(seen)
-    points = view.points[rows, columns].astype(np.float64)
-    return view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True))
+    return measured(depth, rgb)
 
 
 RED, GREEN = (190, 30, 30), (30, 150, 50)
@@ -91,10 +102,8 @@ def test_a_crowd_wider_than_any_object_is_its_objects() -> None:
 
 def rod(colours: list[tuple[int, int, int]], widths: list[float], long: float = 0.2) -> tuple[View, Segment]:
     """What lies across the view, `long` [m]: a half cylinder of pieces of those colours and widths, end to end."""
-    h = w = 200
-    u, v = np.meshgrid(np.arange(w) + 0.5 - w / 2, np.arange(h) + 0.5 - h / 2)
-    rays = np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
-    depth, rgb = np.full((h, w), np.inf), np.zeros((h, w, 3), np.uint8)
+    rays = looks()
+    depth, rgb = np.full((SIDE, SIDE), np.inf), np.zeros((SIDE, SIDE, 3), np.uint8)
     for n, (colour, radius) in enumerate(zip(colours, widths, strict=True)):
         length = long / len(colours)
         a = rays[..., 0] ** 2 + rays[..., 2] ** 2
@@ -105,14 +114,7 @@ def rod(colours: list[tuple[int, int, int]], widths: list[float], long: float = 
         along = far * rays[..., 1] + long / 2 - n * length
         hit = (along > 0) & (along < length) & (far < depth) & (EYE[2] + far * rays[..., 2] > FLOOR)
         depth[hit], rgb[hit] = far[hit], colour
-    seen = np.isfinite(depth)
-    rng = np.random.default_rng(1)
-    depth[seen] *= 1 + rng.normal(0.0, 0.0015, np.count_nonzero(seen))
-    depth[~seen] = 0.0
-    view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (w / 2, h / 2), EYE, rotation())
-    rows, columns = np.nonzero(seen)
-    points = view.points[rows, columns].astype(np.float64)
-    return view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True))
+    return measured(depth, rgb)
 
 
 def test_a_surface_that_runs_on_is_one_whatever_is_printed_on_it() -> None:
