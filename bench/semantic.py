@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from bench import log_linear
 from common.plan_rules import known_world
-from services.planner.grammar.chunks import Chunk, chunks
+from services.planner.grammar.chunks import Chunk
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic import ranker
 from services.planner.semantic.forms import FORMS, NONE, OTHER, Candidate, Deed, candidates, tokens
@@ -30,6 +30,7 @@ from tests.everyday import (
     Understood,
     after,
     all_lists,
+    at_rest,
     planned,
     understand,
     verdict,
@@ -49,7 +50,8 @@ class Labelled(NamedTuple):
 
 _DEEDS: dict[str, set[Deed]] = {
     "fetch": {"bring"}, "put": {"put"}, "tidy": {"put"}, "rule": {"put"}, "take": {"take"}, "drop": {"put", "fingers"},
-    "grip": {"fingers"}, "goto": {"go"}, "return": {"go"}, "find": {"go"}, "look": {"go"}, "wait": {"go"},
+    "grip": {"fingers"}, "goto": {"go"}, "return": {"go"}, "find": {"go"}, "look": {"go"}, "wait": {"wait"},
+    "say": {"say"}, "teach": {"name"}, "place": {"name"}, "forget": {"name"}, "norule": {"name"},
 }  # fmt: skip
 """What is done for the acts of the notation, so that only such candidates are planned."""
 
@@ -77,11 +79,13 @@ class _Planner:
         self._vocabularies: dict[str, Vocabulary] = {}
 
     def example(self, number: str, row: Sentence) -> Labelled | None:
+        row = at_rest(row)
         words = tokens(row.said)
-        if not words or row.context.partition(":")[0] not in ("-", "held", "last", "failed"):
+        if not words or row.context.partition(":")[0] not in ("-", "held", "last", "failed", "instead"):
             return None
-        found = chunks(words, self._vocabulary(row.context), pronouns=True, unlisted=True)
-        meant = candidates(found)
+        vocabulary = self._vocabulary(row.context)
+        found = ranker.named(words, vocabulary)
+        meant = candidates(words, found, vocabulary.before)
         idle = "none()" in row.right or "refuse()" in row.right
         right = [(idle and c.form == NONE) or self._is_right(row, c, idle) for c in meant]
         right[1] = not any(right)
@@ -120,8 +124,6 @@ def _may_be(row: Sentence, candidate: Candidate, idle: bool) -> bool:
         return True
     if idle and (candidate.kind == "ask" or acts <= {"none", "refuse"}):
         return False
-    if candidate.form == "wait_at" and "wait" not in acts:  # going there alone says as much
-        return False
     deed = FORMS[candidate.form].deed
     return not deed or any(deed in _DEEDS.get(act, set()) for act in acts)
 
@@ -133,7 +135,7 @@ def learn(rows: Sequence[Labelled]) -> ranker.Ranker:
 
 
 def _example(row: Labelled, words: frozenset[str]) -> log_linear.Example:
-    options = ranker.options(row.words, row.found, row.meant, words)
+    options = ranker.options(row.words, row.found, row.meant, words, row.sentence.context.startswith("held"))
     return log_linear.Example(options, ranker.embedding(row.words, row.found), row.right)
 
 

@@ -100,7 +100,7 @@ def understand(sentence: Sentence) -> Understood:
     tag, _, about = sentence.context.partition(":")
     match tag:
         case "heard":
-            kind, rest = reply(sentence.said)
+            kind, rest = reply(sentence.said, about)
             if kind == "correction":
                 return planned(corrected(about, rest, HOME), FLAT, "", History())
             return Understood(kind, [], [])
@@ -113,14 +113,26 @@ def understand(sentence: Sentence) -> Understood:
             return Understood(f"pick {label}", [], []) if label else Understood("", [], [], "no choice")
         case "busy":
             said = interjection(sentence.said, about)
-            if said.kind in ("queue", "replace", "aside"):
-                history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
-                if said.kind == "replace":  # what was under way is the last command by then
-                    history = History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
-                found = planned(said.text, FLAT, "", after("last", about)[2] if said.kind == "queue" else history)
-                return found._replace(kind="" if said.kind == "aside" else said.kind)
+            if said.kind == "aside":
+                return planned(said.text, FLAT, "", History(doing=about, step=f"find {about}"))
+            if said.kind in _BEFORE:
+                return planned(said.text, FLAT, "", after(_BEFORE[said.kind], about)[2])._replace(kind=said.kind)
             return Understood(said.kind, [], [])
     return planned(sentence.said, *after(tag, about))
+
+
+_BEFORE: dict[str, str] = {"queue": "last", "replace": "instead"}
+"""Context in which something is planned that was said for later, or instead of what was under way."""
+
+
+def at_rest(sentence: Sentence) -> Sentence:
+    """What was said to a robot at work as the planner gets it, with the readings that are for then; others as it is."""
+    tag, _, about = sentence.context.partition(":")
+    said = interjection(sentence.said, about) if tag == "busy" else None
+    if said is None or said.kind not in _BEFORE:
+        return sentence
+    readings = [r.strip().removeprefix(f"{said.kind}: ") for r in sentence.right.split("||") if said.kind in r]
+    return Sentence(f"{_BEFORE[said.kind]}:{about}", said.text, "||".join(readings)) if readings else sentence
 
 
 def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
@@ -129,6 +141,8 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     if tag == "held":
         history = History(taken_from={about: next((o.on for o in FLAT if o.label == about), "")})
         return [o for o in flat if o.label != about], about, history
+    if tag == "instead":  # what was under way is the last command by then
+        return flat, "", History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
     if tag not in ("last", "failed"):
         return flat, "", History(said="x")
     done = planned(about, FLAT, "", History(), PLAINLY)

@@ -233,7 +233,7 @@ def test_one_part_tells_what_another_means(context: str, said: str, acts: list[s
 
 
 @pytest.mark.parametrize("said", ["quit putting the apple in the bin", "there is no point in fetching the apple",
-                                  "it would be a mistake to throw the can away", "let me get the apple",
+                                  "it would be a mistake to throw the can away",
                                   "what if i put the ball in the toy box", "no need to bring the mug"])  # fmt: skip
 def test_nothing_is_offered_that_was_not_asked_for(said: str) -> None:
     assert not planned(said).asks

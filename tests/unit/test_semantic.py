@@ -14,7 +14,7 @@ from services.planner.semantic.forms import NONE, OTHER, candidates, tokens
 from services.planner.semantic.parse import LONGEST, parse
 from services.planner.semantic.ranker import WEIGHTS, Ranker
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, lists, planned
+from tests.everyday import CONFIG, HOME, Sentence, lists, planned, understand
 
 VOCABULARY = Vocabulary(World(HOME), CONFIG)
 MUG, DESK, SHELF = Chunk("thing", "the mug", 1, 3), Chunk("spot", "the desk", 4, 6), Chunk("spot", "the shelf", 7, 9)
@@ -27,15 +27,15 @@ def _meant(text: str) -> list[str]:
 
 
 def test_every_form_is_tried_with_every_thing_and_place() -> None:
-    texts = [c.text for c in candidates([MUG, DESK, SHELF])]
+    texts = [c.text for c in candidates((), [MUG, DESK, SHELF])]
     assert {"bring me the mug", "put the mug on the desk on the shelf", "tidy up the desk", "come back"} <= set(texts)
     assert "put the mug on the desk on the desk" not in texts and len(texts) == len(set(texts)) + 1
-    assert [c.form for c in candidates([])][:2] == [NONE, OTHER]
+    assert [c.form for c in candidates((), [])][:2] == [NONE, OTHER]
 
 
 def test_things_of_one_command_are_named_together() -> None:
     can = Chunk("thing", "the can", 4, 6)
-    texts = [c.text for c in candidates([MUG, can, can._replace(text="the ball")])]
+    texts = [c.text for c in candidates((), [MUG, can, can._replace(text="the ball")])]
     assert {"bring me the mug and the can", "bring me the mug and the can and the ball"} <= set(texts)
     assert "put the mug next to the can" in texts and "put the mug next to the mug" not in texts
 
@@ -44,9 +44,9 @@ def test_names_leave_no_feature() -> None:
     known = frozenset({"bring", "here"})
     one = abstracted(("bring", "the", "mug", "here"), [MUG], known)
     other = abstracted(("bring", "the", "can", "here"), [MUG._replace(text="the can")], known)
-    for mug, can in zip(candidates([MUG]), candidates([MUG._replace(text="the can")]), strict=True):
+    for mug, can in zip(candidates((), [MUG]), candidates((), [MUG._replace(text="the can")]), strict=True):
         assert features(one, mug) == features(other, can)
-    assert abstracted(("fetch", "the", "mug", "here"), [MUG], known).parts == [UNKNOWN, 0, "here"]
+    assert abstracted(("fetch", "the", "mug", "here"), [MUG], known).parts == [(0, UNKNOWN), (1, 0), (3, "here")]
 
 
 def test_probabilities_sum_to_one_and_the_likeliest_is_first() -> None:
@@ -112,3 +112,42 @@ def test_a_plan_that_does_something_else_is_asked_about() -> None:
 def test_a_thing_nobody_knows_is_doubted_beside_a_likelier_request(said: str, asked: str) -> None:
     found = planned(said)
     assert (bool(found.steps), found.asks) == (not asked, asked)
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("please just be still for three minutes with me", "wait 180 seconds"),
+        ("stay in the kitchen a minute and a half", "go to the kitchen and wait 90 seconds"),
+        ("let everybody hear: the cake is ready", "say the cake is ready"),
+        ("for the future, that's the lemonade", "this is my lemonade"),
+        ("this spot here, we'll call it the atelier", "name this place the atelier"),
+        ("tissues, please", "bring me the tissues"),
+        ("say ready steady go and then go to the kitchen", "say ready steady go, then go to the kitchen"),
+    ],
+)
+def test_times_words_to_say_and_names_are_asked_about(said: str, meant: str) -> None:
+    found = planned(said)
+    assert found.asks == meant and not found.steps
+    assert planned(meant).steps and not planned(meant).asks
+
+
+@pytest.mark.parametrize(
+    ("context", "said", "meant"),
+    [
+        (
+            "busy:put the red mug on the dining table",
+            "changed my mind, kitchen counter please",
+            "put the red mug on the counter",
+        ),
+        ("last:bring me the apple", "and the ball from up there", "bring me the red ball"),
+    ],
+)
+def test_a_part_of_the_command_before_is_exchanged(context: str, said: str, meant: str) -> None:
+    assert understand(Sentence(context, said, "")).asks == meant
+
+
+def test_a_sentence_with_a_verb_of_its_own_exchanges_nothing() -> None:
+    for words, exchanges in ((("the", "desk"), True), (("fetch", "the", "desk"), False)):
+        found = candidates(words, [Chunk("spot", "the desk", len(words) - 2, len(words))], "put the mug on the shelf")
+        assert ("put the mug on the desk" in [c.text for c in found]) is exchanges

@@ -5,13 +5,12 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
-from common.language.contractions import expand
-from common.language.mood import forbids
 from common.language.normalise import normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.simplify import simplified
 from common.messages import WorldObject
-from services.brain.language.dialogue import reply
+from services.brain.language.dialogue import by_wording
+from services.brain.language.offered import BESIDE, UNFIT, likeliest, words_of
 
 _NO_NAME = frozenset({
     "one", "whichever", "of", "them", "those", "these", "will", "with", "go", "the", "please", "that", "this", "mean",
@@ -19,88 +18,35 @@ _NO_NAME = frozenset({
     "said", "mentioned", "think",
 })  # fmt: skip
 _CARDINALS = ("one", "two", "three", "four")
-_ANY_WILL_DO = re.compile(
-    r"^(?:(?:oh|well|um|er|just|really),? )*(?:(?:any|either)(?: (?:one|of (?:them|those|these|the two)))?"
-    r"(?: (?:will do|is fine|would do|please|really|works|is good))?$|any,|(?:whichever|whatever)\b(?! (?:one "
-    r")?(?:is|was|stands|lies|has|comes)\b)"
-    r"|you (?:choose|pick|decide)|surprise me|(?:it is )?up to you"
-    r"|(?:it is |they are )?all the same|your choice|no preference)"
-    r"|\b(?:do not (?:mind|care)(?: which| either way)?$|(?:does not|no) matter|makes no (?:odds|difference)"
-    r"|will do either)"
-)
-"""Who does not mind which."""
 _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(?=.*\w)")
 """What was said before the words that are meant: `did i say mug? i meant ...`."""
-_UNFIT = re.compile(r"\b(?:but|dirty|broken|empty|apart|rather than|instead|other|difference|nor)\b")
-"""Words that name an option in order to pass it over."""
-BESIDE = 0.6
-"""Farthest an object is "next to" another [m] (chosen: both within one reach)."""
+SURE, FIRM = 0.71, 0.95
+"""Least probability of a choice that no wording makes, and of one where something is passed over (chosen on lists left
+out)."""
 
 
 def chosen(
     answer: str, options: Sequence[str], known: Sequence[WorldObject] = (), household: Household | None = None
 ) -> str | None:
-    """The one option that the answer singles out, as a phrase of its own or by what only that one has in it.
+    """The one option that the answer singles out by its wording, or that it most likely means.
 
-    Who does not mind gets the first; another colour of the same kind names one that was not among the options.
+    Another colour of the same kind names one that was not among the options.
     """
-    whole = expand(normalise(answer))
-    if found := _singled_out(answer, options, known, household):
+    if (found := _singled_out(answer, options, known, household)) or household is None:
         return found
-    said = _SAID_BEFORE.sub("", whole)
-    fit = not (forbids(said) or _UNFIT.search(said))
-    if fit and (found := _told_apart(said, options, known, household)):
-        return found
-    if _ANY_WILL_DO.search(whole) and options:
-        return options[0]
-    return _another(said.split(), options, known) if fit else None
-
-
-def _told_apart(
-    said: str, options: Sequence[str], known: Sequence[WorldObject], household: Household | None
-) -> str | None:
-    """The only option with a word in the sentence that the others have not: of its name, its print, use or place."""
-    own = {option: _marks(option, known, household) for option in options}
-    words = {form for word in said.split() for form in (word, word.removesuffix("s"))}
-    for kind in range(len(next(iter(own.values()), ()))):
-        marks = {option: found[kind] for option, found in own.items()}
-        hit = [
-            o
-            for o in options
-            if any(
-                words.issuperset(mark.split())
-                for mark in marks[o]
-                if all(mark not in marks[p] for p in options if p != o)
-            )
-        ]
-        if hit:
-            return hit[0] if len(hit) == 1 else None
-    return None
-
-
-def _marks(option: str, known: Sequence[WorldObject], household: Household | None) -> tuple[set[str], ...]:
-    """What an option may be told by: the words of its name and print, what it is for, and the names of where it is."""
-    items = [o for o in known if o.label == option]
-    texts = [option, *(text for o in items for text in (o.text, *o.names))]
-    names = {form for text in texts for word in normalise(text).split() for form in (word, word.removesuffix("s"))}
-    if household is None:
-        return (names - _NO_NAME,)
-    groups = household.words.groups
-    uses = {group.split()[-1] for group, kinds in groups.items() if any(o.kind in kinds for o in items)}
-    own = household.receptacle(option)
-    parts = [own] if own else [r for o in items if (r := household.receptacle(o.on or ""))]
-    names |= {word for alias in (own.aliases if own else ()) for word in alias.split()}
-    rooms = [room for p in parts if (room := household.room_at(*p.center[:2]))]
-    at = {name for room in rooms for name in (room.name, *room.aliases)}
-    at |= {name for part in parts if part is not own for name in (part.name, *part.aliases)}
-    return names - _NO_NAME, uses, at
+    meant = _SAID_BEFORE.sub("", normalise(answer, ","))
+    words = words_of(meant)
+    likely, p = likeliest(meant, options, known, household)
+    named = any(not set(option.split()).isdisjoint(words) for option in options)
+    least = FIRM if named and not UNFIT.isdisjoint(words) else SURE
+    return likely if likely and p >= least else _another(words, options, known)
 
 
 def _another(words: Sequence[str], options: Sequence[str], known: Sequence[WorldObject]) -> str | None:
     """`the white one` between the red mug and the blue one, where a white mug is known."""
     kinds = {option.split()[-1] for option in options}
     labels = {o.label for o in known} if len(kinds) == 1 else set()
-    found = labels & {f"{word} {kind}" for word in words for kind in kinds}
+    found = labels.difference(options) & {f"{word} {kind}" for word in words for kind in kinds}
     return found.pop() if len(found) == 1 else None
 
 
@@ -108,7 +54,7 @@ def _singled_out(
     answer: str, options: Sequence[str], known: Sequence[WorldObject], household: Household | None
 ) -> str | None:
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
-    bare = " ".join(simplified(tuple(reply(answer)[1].split())))
+    bare = " ".join(simplified(tuple(by_wording(answer)[1].split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     for n, ordinal in enumerate(("first", "second", "third", "fourth")):
         if words in (

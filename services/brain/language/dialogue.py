@@ -14,6 +14,7 @@ from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise
 from common.language.politeness import without_politeness
 from common.plan_rules import is_destination
+from services.brain.language.senses import ANSWERS
 
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(
@@ -35,8 +36,25 @@ LONGEST_NAME = 3
 """Most words of an answer that is a name alone and no sentence of its own (chosen)."""
 
 
-def reply(text: str) -> tuple[Reply, str]:
-    """The kind of answer, and for a correction the words without its "no, I said"."""
+SURE = {"yes": 0.85, "no": 0.6}
+"""Least probability of an answer that no wording says (chosen on lists left out: a false yes costs more)."""
+
+
+def reply(text: str, asked: str = "") -> tuple[Reply, str]:
+    """The kind of answer, and for a correction the words without its "no, I said".
+
+    By its wording, or as it is most likely meant as an answer to whether the command `asked` was meant.
+    """
+    kind, rest = by_wording(text)
+    if kind == "correction" and "?" not in text:
+        sense, p = ANSWERS.likeliest(text, asked, kind)
+        if p >= SURE.get(sense, 1.0):
+            return sense, ""  # type: ignore[return-value]
+    return kind, rest
+
+
+def by_wording(text: str) -> tuple[Reply, str]:
+    """The same by the wordings alone."""
     rest = without_fillers(expand(normalise(text)))
     if (kind := _kind(rest)) is not None:
         return kind, ""

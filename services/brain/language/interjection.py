@@ -14,11 +14,12 @@ from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import without_politeness
 from common.language.wording import Action
-from services.brain.language.at_work import likeliest
+from services.brain.language.senses import AT_WORK
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside", "encouragement", "idle"]
-SURE, FIRM = 0.4, 0.8
-"""Least probability of a sense that no wording says, and of another than a wording says (chosen on lists left out)."""
+SURE, FIRM = 0.35, 0.8
+"""Least probability of a sense that no wording says, and of another than a wording or a verb in front says (chosen on
+lists left out)."""
 _SAME = {"stop": "cancel", "replace": "come_back"}
 """Kinds that say more than a sense of the model."""
 _LATER = re.compile(
@@ -30,7 +31,7 @@ _LATER = re.compile(
 )
 """Words before a command that put it behind the one under way."""
 _LATER_END = re.compile(
-    r"[, ]+(?:after(?:wards| that| this)|next|later(?: on)?|too|as well|"
+    r"[, ]+(?:after(?:wards| that| this)?|next|later(?: on)?|too|as well|"
     r"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back))$"
 )
 """The same behind it."""
@@ -117,10 +118,10 @@ def interjection(said: str, doing: str = "") -> Interjection:
     decided = found.kind == "encouragement" or _FORBIDDEN.match(_words(said))
     if decided or asks_for(said, "stop", "cancel", "come_back"):
         return found
-    sense, p = likeliest(said, doing, found.kind)
+    sense, p = AT_WORK.likeliest(said, doing, found.kind)
     if p < least or found.kind in (sense, _SAME.get(sense)):
         return found
-    return Interjection("cancel" if sense == "stop" else sense, said)
+    return Interjection("cancel" if sense == "stop" else sense, said)  # type: ignore[arg-type]
 
 
 def by_wording(said: str, doing: str = "") -> tuple[Interjection, float]:
@@ -133,7 +134,8 @@ def by_wording(said: str, doing: str = "") -> tuple[Interjection, float]:
         return found, FIRM
     if is_question(said):
         return Interjection("aside", said), SURE
-    return Interjection("queue" if without_politeness(words) else "encouragement", said), SURE
+    plainly = without_politeness(words)
+    return Interjection("queue" if plainly else "encouragement", said), FIRM if verb_first(plainly) else SURE
 
 
 def _words(said: str) -> str:

@@ -69,7 +69,11 @@ class HearAnswer(SendGoal):
     def succeed(self, result: Result) -> Status:
         assert isinstance(result.message, m.SpeechResult)
         text = result.message.text
-        return self.heard(*reply(text), text)
+        return self.heard(*reply(text, self.asked()), text)
+
+    def asked(self) -> str:
+        """The command that was asked about, "" where the question is another one."""
+        return ""
 
     def heard(self, kind: Reply, rest: str, text: str) -> Status:
         """What becomes of an answer, by its kind and what it says besides."""
@@ -96,6 +100,9 @@ class HearConfirmation(HearAnswer):
 
     def spoken(self) -> str:
         return "I did not hear an answer."
+
+    def asked(self) -> str:
+        return self.ctx.mission.command
 
     def heard(self, kind: Reply, rest: str, text: str) -> Status:
         mission = self.ctx.mission
@@ -172,6 +179,9 @@ class HearMeaning(HearAnswer):
 
     def spoken(self) -> str:
         return "I did not hear whether you meant that, so I do nothing."
+
+    def asked(self) -> str:
+        return self.ctx.mission.planning.suggestion
 
     def heard(self, kind: Reply, rest: str, text: str) -> Status:
         mission = self.ctx.mission

@@ -3,6 +3,7 @@
 from typing import Literal, NamedTuple
 
 from common.language.normalise import DETERMINERS, Words
+from common.language.quantities import duration
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LIVING, LONGEST_NAME, NO_NOUN
 from services.planner.grammar.vocabulary import Vocabulary
@@ -13,34 +14,45 @@ POINTING = ("it", "them", "those")
 """Pronouns that stand for things."""
 _BEFORE_NAMES = frozenset({"the", "my", "our", "a", "an", "some", "your"})
 """Determiners before names of things that nobody has listed; `that` and `his` mostly go with verbs and people."""
+MARK = ","
+"""The word that stands for every mark."""
+_BEHIND_BARE = frozenset(
+    {MARK, "please", "instead", "now", "next", "too", "also", "then", "after", "afterwards", "here"}
+)
+"""What may follow a name that is all there is of a request."""
 _NEVER_FIRST = NO_NOUN - DETERMINERS - {"all", "both", "every", "each"}
 """Words that no phrase for a thing or a place begins with."""
 
 
 class Chunk(NamedTuple):
-    """Words from `begin` to before `end`, which name a thing or a place; `text` has its article.
+    """Words from `begin` to before `end`, which name a thing, a place or a length of time; `text` has its article.
 
-    `new`: nobody has listed or seen such a thing.
+    `new`: nobody has listed or seen such a thing. The text of a time is in seconds.
     """
 
-    kind: Literal["thing", "spot"]
+    kind: Literal["thing", "spot", "time"]
     text: str
     begin: int
     end: int
     new: bool = False
 
 
-def chunks(words: Words, vocabulary: Vocabulary, pronouns: bool = False, unlisted: bool = False) -> list[Chunk]:
+def chunks(
+    words: Words, vocabulary: Vocabulary, pronouns: bool = False, unlisted: bool = False, alone: bool = False
+) -> list[Chunk]:
     """Phrases for known things and for places among the words, the longest at each spot.
 
-    On request also pronouns, and names of `unlisted` things behind a determiner.
+    On request also pronouns, and names of `unlisted` things behind a determiner; and what only stands `alone` for a
+    request: lengths of time, and names without a determiner that a whole part of the sentence consists of.
     """
     found: list[Chunk] = []
     at = 0
     while at < len(words):
-        chunk = _longest(words, at, vocabulary)
+        chunk = (_time(words, at) if alone else None) or _longest(words, at, vocabulary)
         if chunk is None and unlisted:
             chunk = _unlisted(words, at, vocabulary)
+        if chunk is None and alone:
+            chunk = _bare(words, at, vocabulary)
         if chunk is None and pronouns and words[at] in POINTING:
             chunk = Chunk("thing", words[at], at, at + 1)
         found += [chunk] if chunk else []
@@ -77,6 +89,28 @@ def _unlisted(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
         if not is_told and LIVING.isdisjoint(name) and vocabulary.unlisted(name) is not None:
             return Chunk("thing", " ".join(words[at:end]), at, end, new=True)
     return None
+
+
+def _time(words: Words, at: int) -> Chunk | None:
+    """The longest length of time that begins there: `a minute and a half`."""
+    for end in range(min(len(words), at + MOST_WORDS), at + 1, -1):
+        if (seconds := duration(words[at:end])) is not None:
+            return Chunk("time", f"{seconds:g} seconds", at, end)
+    return None
+
+
+def _bare(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
+    """A name that nobody has listed and no determiner leads, where nothing else is said: `tissues, please`."""
+    if at and words[at - 1] != MARK:
+        return None
+    stop = words.index(MARK, at) if MARK in words[at:] else len(words)
+    end = next((i for i in range(at, stop) if words[i] in _BEHIND_BARE), stop)
+    name = words[at:end]
+    if not _BEHIND_BARE.issuperset(words[end:stop]) or not LIVING.isdisjoint(name):
+        return None
+    lasts = any(_time(words, i) for i in range(at, end))
+    known = not lasts and 0 < len(name) <= LONGEST_NAME and vocabulary.unlisted(name, determined=False) is not None
+    return Chunk("thing", f"the {' '.join(name)}", at, end, new=True) if known else None
 
 
 def _plain(phrase: Phrase) -> bool:

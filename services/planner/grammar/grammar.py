@@ -59,6 +59,8 @@ def plan(
             return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
         asked = likely.steps if likely and not likely.answers else steps
         meant = "" if literally else as_command(asked, world)
+        if likely and asked is likely.steps and not literally:
+            meant = meant or ", then ".join(likely.texts)
         if meant and attempts.is_said(meant):
             return ActionPlan(request_id=request_id, steps=asked, source=SOURCE)
         return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail, suggestion=meant)

@@ -36,6 +36,8 @@ class Vocabulary(Spots):
         self.new_nouns = False
         self.phrases: dict[tuple[bool, Words], Any] = {}
         household, known = world.household, [*world.specs, *world.objects]
+        self.holds = world.held is not None
+        self.before = normalise(world.history.last.command) if world.history.last is not None else ""
         words = household.words
         self.kinds = {t.kind for t in known if t.kind} | set(words.kinds)
         colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}

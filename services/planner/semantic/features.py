@@ -15,8 +15,8 @@ from common.language.mood import forbids, is_asked, is_told
 from common.language.normalise import Words
 from common.language.politeness import without_politeness
 from common.language.verb_classes import classes
-from services.planner.grammar.chunks import POINTING, Chunk
-from services.planner.semantic.forms import MARK, Candidate
+from services.planner.grammar.chunks import MARK, POINTING, Chunk
+from services.planner.semantic.forms import Candidate
 
 BEGIN, END = "<begin>", "<end>"
 _PREPOSITIONS = frozenset({
@@ -32,24 +32,30 @@ _QUARTERS, _LONG = 4, 6
 
 
 class Said(NamedTuple):
-    """`parts`: the words, with the number of a thing or place in `found` for its words; `signs`: of the whole."""
+    """`parts`: the words, with the number of a thing or place in `found` for its words, each with where it begins.
 
-    parts: list[str | int]
+    `signs`: of the whole.
+    """
+
+    parts: list[tuple[int, str | int]]
     found: Sequence[Chunk]
     signs: list[str]
 
 
-def abstracted(words: Words, found: Sequence[Chunk], known: frozenset[str]) -> Said:
-    """A sentence in words and marks without the names in it; a word that is not `known` stands for all of them."""
+def abstracted(words: Words, found: Sequence[Chunk], known: frozenset[str], holds: bool = False) -> Said:
+    """A sentence in words and marks without the names in it; a word that is not `known` stands for all of them.
+
+    `holds`: it is said to a robot that has something in its hand.
+    """
     begins = {chunk.begin: number for number, chunk in enumerate(found)}
-    parts: list[str | int] = []
+    parts: list[tuple[int, str | int]] = []
     at = 0
     while at < len(words):
         number = begins.get(at)
-        parts.append((words[at] if words[at] in known else UNKNOWN) if number is None else number)
+        parts.append((at, (words[at] if words[at] in known else UNKNOWN) if number is None else number))
         at = at + 1 if number is None else found[number].end
     inside = {f"in {w}" for chunk in found if chunk.new for w in words[chunk.begin : chunk.end] if w in known}
-    return Said(parts, found, [*_signs(words, found), *sorted(inside)])
+    return Said(parts, found, [*_signs(words, found), *sorted(inside), *(["holds"] if holds else [])])
 
 
 def _signs(words: Words, found: Sequence[Chunk]) -> list[str]:
@@ -70,9 +76,9 @@ def features(said: Said, candidate: Candidate) -> list[int]:
 
 
 def _names(said: Said, candidate: Candidate) -> Iterator[str]:
-    form, kind, roles = candidate.form, candidate.kind, candidate.roles
-    marks = [BEGIN, *(t if isinstance(t, str) else _mark(said.found[t], roles.get(t, "")) for t in said.parts), END]
-    counts = {name: min(marks.count(name), _COUNTED) for name in ("#thing", "#thing new", "#spot", UNKNOWN)}
+    form, kind = candidate.form, candidate.kind
+    marks = [BEGIN, *_marks(said, candidate), END]
+    counts = {name: min(marks.count(name), _COUNTED) for name in ("#thing", "#thing new", "#spot", "#time", UNKNOWN)}
     for of in (form, kind):
         for name, count in counts.items():
             yield f"{of} {name} {count}"
@@ -90,6 +96,17 @@ def _names(said: Said, candidate: Candidate) -> Iterator[str]:
     yield f"{kind} begins {' '.join(marks[:4])}"
     yield f"{form} order {' '.join(m for m in marks if m[0] == '#')}"
     yield from _governed(form, marks)
+
+
+def _marks(said: Said, candidate: Candidate) -> Iterator[str]:
+    """The words, those that the candidate quotes and each thing and place as one."""
+    begin, end = candidate.span or (0, 0)
+    for at, part in said.parts:
+        if at == begin < end:
+            yield "#quoted"
+        if begin <= at < end:
+            continue
+        yield part if isinstance(part, str) else _mark(said.found[part], candidate.roles.get(part, ""))
 
 
 def _governed(form: str, marks: Sequence[str]) -> Iterator[str]:

@@ -9,8 +9,9 @@ from functools import cache
 from typing import NamedTuple
 
 from common.language.normalise import Words
+from services.planner.grammar.chunks import MARK
 from services.planner.grammar.vocabulary import Vocabulary
-from services.planner.semantic.forms import MARK, NONE, OTHER, Candidate
+from services.planner.semantic.forms import NONE, OTHER, Candidate
 from services.planner.semantic.ranker import Ranked, rank
 
 LEAST = 0.3
@@ -60,11 +61,15 @@ def parse(words: Words, vocabulary: Vocabulary) -> list[Part]:
 def _option(
     words: Words, begin: int, end: int, ranked: Callable[[int, int], tuple[Ranked, ...]]
 ) -> tuple[float, list[Part]]:
-    top = max(
-        (r for r in ranked(begin, end) if r.candidate.form != OTHER),
-        key=lambda r: r.p * (DOUBT if r.candidate.form == NONE else 1.0),
+    of_form: dict[tuple[object, ...], list[Ranked]] = {}
+    for one in ranked(begin, end):  # quotations of other lengths say the same
+        of_form.setdefault((one.candidate.form, *one.candidate.roles.items()), []).append(one)
+    options = [(group[0].candidate, sum(one.p for one in group)) for group in of_form.values()]
+    meant, p = max(
+        (option for option in options if option[0].form != OTHER),
+        key=lambda option: option[1] * (DOUBT if option[0].form == NONE else 1.0),
     )
-    return math.log(max(top.p, 1e-9)), [Part(_trimmed(words[begin:end]), top.candidate, top.p)]
+    return math.log(max(p, 1e-9)), [Part(_trimmed(words[begin:end]), meant, p)]
 
 
 def _share(ranked: tuple[Ranked, ...], form: str) -> float:

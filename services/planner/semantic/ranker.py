@@ -12,15 +12,15 @@ from typing import NamedTuple
 from common.language.embedding import beside_features
 from common.language.log_linear import Floats, LogLinear, Option
 from common.language.normalise import Words
-from services.planner.grammar.chunks import POINTING, Chunk, chunks
+from services.planner.grammar.chunks import MARK, POINTING, Chunk, chunks
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.features import abstracted, features
-from services.planner.semantic.forms import MARK, Candidate, candidates
+from services.planner.semantic.forms import Candidate, candidates
 
 WEIGHTS = "weights.npz"
 """Beside this module: what `LogLinear.save` wrote."""
-_STANDS_FOR = {"thing": "the thing", "spot": "the table"}
-"""What a thing or place is called in the sentence without names."""
+_STANDS_FOR = {"thing": "the thing", "spot": "the table", "time": "a minute"}
+"""What a thing, place or time is called in the sentence without names."""
 
 
 class Ranked(NamedTuple):
@@ -30,9 +30,11 @@ class Ranked(NamedTuple):
     p: float
 
 
-def options(words: Words, found: Sequence[Chunk], meant: Sequence[Candidate], known: frozenset[str]) -> list[Option]:
-    """The candidates of a sentence as the model sees them."""
-    said = abstracted(words, found, known)
+def options(
+    words: Words, found: Sequence[Chunk], meant: Sequence[Candidate], known: frozenset[str], holds: bool
+) -> list[Option]:
+    """The candidates of a sentence as the model sees them; `holds`: the hand is not empty."""
+    said = abstracted(words, found, known, holds)
     return [Option(c.form, features(said, c)) for c in meant]
 
 
@@ -52,6 +54,11 @@ def embedding(words: Words, found: Sequence[Chunk]) -> Floats:
     return beside_features(" ".join(bare), " ".join(word for word in words if word != MARK))
 
 
+def named(words: Words, vocabulary: Vocabulary) -> list[Chunk]:
+    """The things, places and times that a sentence names."""
+    return chunks(words, vocabulary, pronouns=True, unlisted=True, alone=True)
+
+
 class Ranker:
     """The candidates of sentences by a model."""
 
@@ -65,9 +72,11 @@ class Ranker:
 
     def rank(self, words: Words, vocabulary: Vocabulary) -> list[Ranked]:
         """All candidates of a sentence in words and marks (`forms.tokens`), the likeliest first."""
-        found = chunks(words, vocabulary, pronouns=True, unlisted=True)
-        meant = candidates(found)
-        p = self.model.probabilities(options(words, found, meant, self.model.words), embedding(words, found))
+        found = named(words, vocabulary)
+        meant = candidates(words, found, vocabulary.before)
+        p = self.model.probabilities(
+            options(words, found, meant, self.model.words, vocabulary.holds), embedding(words, found)
+        )
         return sorted(map(Ranked, meant, p.tolist()), key=lambda ranked: -ranked.p)
 
 
