@@ -46,7 +46,7 @@ PARTS = {
     "services.perception.views.state_buffer:StateBuffer.update": "robot state",
     "services.navigation.localisation.localise:Localiser.predict": "localisation",
     "services.navigation.localisation.localise:Localiser.correct": "localisation",
-    "services.navigation.planning.costmap:Costmap.see": "costmap",
+    "services.navigation.planning.obstacle_layer:ObstacleLayer.see": "costmap",
     "services.navigation.motion.obstacle_tracker:ObstacleTracker.update": "obstacle tracker",
     "services.navigation.motion.navigator:Navigator.step": "navigator",
     "services.navigation.planning.planner:PathPlanner.field": "planning",

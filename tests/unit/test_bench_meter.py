@@ -1,7 +1,10 @@
 """CPU time by service and part, on a clock of the test's own."""
 
+import pkgutil
+
 import pytest
 
+from bench.profile.__main__ import PARTS
 from bench.profile.meter import NOBODY, Meter
 
 
@@ -50,3 +53,8 @@ def test_what_a_part_raises_passes_and_the_next_one_is_counted_on_its_own() -> N
         meter.probe(fails, "step", "brain")()
     meter.probe(lambda: clock.work(2), "step", "sim")()
     assert meter.take() == {("brain", "step"): 1.0, ("sim", "step"): 2.0}
+
+
+@pytest.mark.parametrize("where", PARTS)
+def test_every_part_that_is_probed_is_there(where: str) -> None:
+    assert callable(pkgutil.resolve_name(where))
