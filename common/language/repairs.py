@@ -2,13 +2,12 @@
 
 import re
 
+from common.language.apposition import apposed, refined
 from common.language.contrasts import CONTRAST, contrasted, instead, with_qualities
-from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
+from common.language.exchange import PREPOSITIONS, IsPlace, replaced, verb_first
 from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
-from common.language.noun_phrase import WHICH
 from common.language.politeness import without_politeness
-from common.naming.names import ALIKE
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
@@ -64,15 +63,6 @@ _SPARED_FIRST = re.compile(
     rf"(?:and |but |just )+(?P<said>{A_VERB} .+)$"
 )
 _EXCEPT = re.compile(r",\s*(?:and |but |only |just )?(?=(?:not|except|but not|apart from|other than)\b)")
-_REFINEMENT = re.compile(
-    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
-    r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
-)
-"""A thing, and which one of its kind."""
-_SMALL = "me us and now where is are not no or what which then ok okay yes also i we you he she they so but want need"
-NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
-"""Words that no name of a thing has, and those before another thing, which is not the same as the one before."""
-_GOES_ON = frozenset({"for", "except", "than", "and", "or", "then", "but", "not", "with", "to", "as"})
 _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
 LONGEST_LEAD = 4
 """Words before a comma that may be left out (chosen)."""
@@ -109,13 +99,12 @@ _APPOSED = re.compile(
 )
 """A thing, which one it is, and what is to be done with it."""
 _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
-_ANY = re.compile(r"\b(an? (\w+)), (?:any|either|whichever)(?: (?:\2|one|of them|will do|you (?:like|want)))?\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
-    text = _refined(_apposed(_without_lead(text)))
+    text = refined(apposed(_without_lead(text)))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(text)
     if (found := _NOT_THAT_ONE.match(text)) and not _SEVERAL.search(found["said"]):
@@ -134,7 +123,7 @@ def settled(text: str, is_place: IsPlace) -> str:
         text = replaced(without_politeness(found["said"]), found["one"].strip(), is_place) or text
     if found := _NOT_THERE.match(text):
         text = found["said"]
-    text = _refined(_repaired(text, is_place))
+    text = refined(_repaired(text, is_place))
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
@@ -182,7 +171,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         found = (None, *_REPAIR.finditer(text))[-1]
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
-        meant = _refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
+        meant = refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
         if contrast := CONTRAST.match(meant):
             meant = with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
         meant, comma, rest = meant.partition(", ")
@@ -209,59 +198,3 @@ def _without_lead(text: str) -> str:
     ):
         return rest
     return text
-
-
-_WHICH_ONE = re.compile(r"^(?:the|a|an|my) (?:\w+ ){1,2}one$")
-_ANY_ONE = re.compile(
-    r"^(?:any|either|whichever|it does not matter which|i do not (?:mind|care))(?: one| (?:one )?will do)?$"
-)
-
-
-def _apposed(text: str) -> str:
-    """A text with which one of its kind is meant said at once: `my ball is gone, the red one, find it`.
-
-    A thing that has its colour already is followed by another one; any one is no other one.
-    """
-    first, *parts = text.split(", ")
-    kept, merged = [first], False
-    for part in parts:
-        if merged and part.split()[0] in PREPOSITIONS:  # "put the mug, the blue one, on the desk"
-            kept[-1], merged = f"{kept[-1]} {part}", False
-            continue
-        merged = False
-        words = kept[-1].split()
-        begin, end = next(iter(noun_phrases(words)), (0, 0))
-        if not verb_first(without_politeness(kept[-1])):  # what is told goes on behind its noun: "my ball rolled off"
-            end = min(end, begin + 2)
-        end = next((at for at in range(begin + 1, end) if words[at] in DETERMINERS or words[at] in WHICH), end)
-        said = words[begin:end]
-        if _ANY_ONE.match(part) and said:
-            continue
-        of_it = (
-            _WHICH_ONE.match(part)
-            and "not" not in words
-            and end - begin > 1
-            and "one" not in said
-            and not ALIKE.keys() & set(said[1:-1])
-        )
-        if not of_it:
-            kept.append(part)
-            continue
-        name = " ".join(w for w in said[1:] if w not in WHICH)
-        kept[-1], merged = " ".join((*words[:begin], part.removesuffix("one").strip(), name, *words[end:])), True
-    return ", ".join(kept)
-
-
-def _refined(text: str) -> str:
-    """`the can, the red one` as `the red can`."""
-    text = _ANY.sub(r"\1", text)
-    found = _REFINEMENT.match(text)
-    if found is None or found["said"].split()[-1] in _GOES_ON:
-        return text
-    spans = noun_phrases(found["said"].split())
-    if not spans and re.match(r"\w+(?: \w+)?(?: please)?$", found["said"]) and not NO_NOUN & set(found["said"].split()):
-        return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
-    if not spans or spans[-1][1] - spans[-1][0] != 2:
-        return text
-    rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
-    return f"{replaced(found['said'], found['one']) or found['said']}{rest}"

@@ -5,6 +5,7 @@ from collections.abc import Container, Iterator
 from typing import Literal
 
 from common.kinds import KINDS
+from common.language.apposition import NO_NOUN
 from common.language.breaks import is_statement
 from common.language.contractions import expand
 from common.language.discourse import commands
@@ -14,7 +15,6 @@ from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.pattern import Slots
 from common.language.quantities import NUMBERS, UNITS
 from common.language.refusals import REFUSALS
-from common.language.repairs import NO_NOUN
 from common.language.simplify import simplified
 from common.language.verb_classes import classes
 from common.language.word_order import reworded

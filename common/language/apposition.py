@@ -1,0 +1,75 @@
+"""Which one of its kind is meant, said behind a thing: `the can, the red one`, `my ball is gone, the red one`. Pure."""
+
+import re
+
+from common.language.exchange import PREPOSITIONS, filled, noun_phrases, replaced, verb_first
+from common.language.lexicon import COMMANDING
+from common.language.normalise import DETERMINERS
+from common.language.noun_phrase import WHICH
+from common.language.politeness import without_politeness
+from common.naming.names import ALIKE
+
+_REFINEMENT = re.compile(
+    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
+    r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
+)
+"""A thing, and which one of its kind."""
+_SMALL = "me us and now where is are not no or what which then ok okay yes also i we you he she they so but want need"
+NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
+"""Words that no name of a thing has, and those before another thing, which is not the same as the one before."""
+_GOES_ON = frozenset({"for", "except", "than", "and", "or", "then", "but", "not", "with", "to", "as"})
+_ANY = re.compile(r"\b(an? (\w+)), (?:any|either|whichever)(?: (?:\2|one|of them|will do|you (?:like|want)))?\b")
+_WHICH_ONE = re.compile(r"^(?:the|a|an|my) (?:\w+ ){1,2}one$")
+_ANY_ONE = re.compile(
+    r"^(?:any|either|whichever|it does not matter which|i do not (?:mind|care))(?: one| (?:one )?will do)?$"
+)
+
+
+def apposed(text: str) -> str:
+    """A text with which one of its kind is meant said at once: `my ball is gone, the red one, find it`.
+
+    A thing that has its colour already is followed by another one; any one is no other one.
+    """
+    first, *parts = text.split(", ")
+    kept, merged = [first], False
+    for part in parts:
+        if merged and part.split()[0] in PREPOSITIONS:  # "put the mug, the blue one, on the desk"
+            kept[-1], merged = f"{kept[-1]} {part}", False
+            continue
+        merged = False
+        words = kept[-1].split()
+        begin, end = next(iter(noun_phrases(words)), (0, 0))
+        if not verb_first(without_politeness(kept[-1])):  # what is told goes on behind its noun: "my ball rolled off"
+            end = min(end, begin + 2)
+        end = next((at for at in range(begin + 1, end) if words[at] in DETERMINERS or words[at] in WHICH), end)
+        said = words[begin:end]
+        if _ANY_ONE.match(part) and said:
+            continue
+        of_it = (
+            _WHICH_ONE.match(part)
+            and "not" not in words
+            and end - begin > 1
+            and "one" not in said
+            and not ALIKE.keys() & set(said[1:-1])
+        )
+        if not of_it:
+            kept.append(part)
+            continue
+        name = " ".join(w for w in said[1:] if w not in WHICH)
+        kept[-1], merged = " ".join((*words[:begin], part.removesuffix("one").strip(), name, *words[end:])), True
+    return ", ".join(kept)
+
+
+def refined(text: str) -> str:
+    """`the can, the red one` as `the red can`."""
+    text = _ANY.sub(r"\1", text)
+    found = _REFINEMENT.match(text)
+    if found is None or found["said"].split()[-1] in _GOES_ON:
+        return text
+    spans = noun_phrases(found["said"].split())
+    if not spans and re.match(r"\w+(?: \w+)?(?: please)?$", found["said"]) and not NO_NOUN & set(found["said"].split()):
+        return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
+    if not spans or spans[-1][1] - spans[-1][0] != 2:
+        return text
+    rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
+    return f"{replaced(found['said'], found['one']) or found['said']}{rest}"
