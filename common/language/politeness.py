@@ -23,11 +23,21 @@ _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
 _DEARS = (
-    "hen|pal|hun|hon|luv|pet|duck|ducky|petal|poppet|cobber|sunshine|guv|guvnor|boss|chief|champ|lass|lad|sugar|baby|"
-    "babe|doll|bruv|brother|darlin|darling|sir|madam|ma'am|jeeves|butler|mr robot|my lovely|my good man|old "
+    "hen|pal|hun|hon|luv|ducky|petal|poppet|cobber|sunshine|guv|guvnor|boss|chief|champ|lass|lad|"
+    "babe|bruv|brother|darlin|darling|sir|madam|ma'am|jeeves|butler|mr robot|my lovely|my good man|old "
     "thing|old bean"
 )
 """How the robot is called by those who like it."""
+_DEAR_THINGS = "pet|duck|sugar|baby|doll"
+"""The same by names that things have as well: `the rubber duck`."""
+_NO_NAME = "".join(
+    f"(?<={word} )|" for word in ("me", "us", "it", "you", "now", "here", "that", "there", "please", "tidying")
+)
+"""Behind which they are no part of a thing's name."""
+_NO_TOY = "".join(
+    f"(?<!{word} )" for word in ("toy", "tin", "wooden", "plastic", "gingerbread", "action", "lego", "snow")
+)
+"""Not behind what makes a figure of a robot or a man."""
 _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
@@ -42,7 +52,7 @@ _OCCASION = (
 """Occasions and conditions that are none."""
 
 _ADDRESS = (
-    rf"(?:{_DEARS})(?=,)|(?:{_DEARS})(?= "
+    rf"(?:{_DEARS}|{_DEAR_THINGS})(?=,)|(?:{_DEARS}|{_DEAR_THINGS})(?= "
     r"(?:please|can|could|will|would|go|come|back|bring|fetch|get|give|put|take|pick|move|clear|find|tidy)\b)|"
     "mr robot|mister robot|at some point|(?:no|now) then|righto|right then|right you are|as discussed|as agreed|"
     "no (?:pressure|rush(?: at all)?|"
@@ -146,6 +156,7 @@ _FRAMES = (
 """Frames of a request; what is asked for follows."""
 _ENDINGS = (
     rf"(?<!the )(?<!my )(?<!our )(?<!his )(?<!her )(?<!an )(?<! a )(?<!to )(?<!for )(?<!with )(?:{_DEARS})|"
+    rf"(?:{_NO_NAME}(?<=, ))(?:{_DEAR_THINGS})|"
     r"(?:and )?(?:that|it|this|which) (?:would|will) (?:really )?(?:be (?:\w+ ){0,2}?(?:great|super|nice|lovely|good|"
     r"brilliant|champion|wonderful|perfect|fantastic|handy|grand|smashing|appreciated)|help(?: (?:me|us|a lot|out))*|"
     r"make my day)|(?:could|can|would|will) you (?:see to|sort|arrange) (?:it|that|this)|"
@@ -163,8 +174,9 @@ _ENDINGS = (
     "immediately|straight away|this instant|for me|(?:just )?for now|"
     "at the moment|at all|at present|currently|"
     "for us|thanks|thank you"
-    "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
-    "ok|alright|(?<=, )right|man|mate|"
+    rf"(?: very much| so much| a lot)?|(?<!real )(?<! a ){_NO_TOY}robot|tidybot|jarvis|then|anyway|and|"
+    "will you please|okay|"
+    rf"ok|alright|(?<=, )right|{_NO_TOY}man|mate|"
     "buddy|dude|my friend|(?<!the )(?<!an )(?<!that )(?<!our )(?:old|young|good) "
     "(?:man|lad|lady|fellow|chap|friend)|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or "
     "something|or so|"

@@ -390,3 +390,12 @@ def test_questions_and_orders_are_told_apart() -> None:
 def test_a_paraphrase_means_the_likeliest_command(said: str, meant: str) -> None:
     parts = parse(tokens(said), Vocabulary(World(HOME), CONFIG))
     assert next((part.meant.text for part in parts if part.meant.text), "") == meant
+
+
+@pytest.mark.parametrize(
+    ("said", "thing"),
+    [("bring me the rubber duck", "rubber duck"), ("bring me the sugar", "sugar"),
+     ("get me the toy robot please", "toy robot"), ("bring me the red mug robot", "red mug")],
+)  # fmt: skip
+def test_a_name_of_a_thing_is_no_term_of_address(said: str, thing: str) -> None:
+    assert [step.object for step in planned(said).steps if step.action == "find"] == [thing]
