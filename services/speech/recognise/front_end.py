@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.household import Household
-from common.language.spoken import BETWEEN
 from common.process.host import return_memory
 from common.sound import RATE
 from services.speech.config import SpeechConfig
@@ -16,7 +15,6 @@ from services.speech.recognise.denoise import noise_ratio, reduce_noise
 from services.speech.recognise.free_text import cost, freely
 from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
-from services.speech.recognise.scoring import Expected
 from services.speech.recognise.wake_text import without_wake
 
 BEFORE, AFTER = 0.2, 0.6
@@ -62,7 +60,7 @@ class FrontEnd:
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
         self._detector, self._config = VoiceDetector(), config
         self._names = known_names(config, household, ())
-        self._recogniser = Recogniser(config, found, lambda text: cost(text, self._names, config), self._expected())
+        self._recogniser = Recogniser(config, found, lambda text: cost(text, self._names, config))
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
         """What 16 kHz int16 samples (n,) say, without the wake word, for which its detector gave a score."""
@@ -77,9 +75,5 @@ class FrontEnd:
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for the names of this household, and for these of things as well."""
+        self._recogniser.learn(household, names)
         self._names = known_names(self._config, household, names)
-        self._recogniser.learn(household, names, self._expected())
-
-    def _expected(self) -> Expected:
-        """What names things and places, and is not also said of anything else."""
-        return Expected(self._names - BETWEEN)

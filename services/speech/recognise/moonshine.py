@@ -110,12 +110,9 @@ class Moonshine:
             scores, cache = self._decoder.step(utterance.attended, cache, [0], [best])
         return Decoded(self._spelled(numbers), total, (*numbers, EOS))
 
-    def freely(self, utterance: EncodedUtterance, prior: Callable[[str], float]) -> list[Decoded]:
-        """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first.
-
-        Beginnings are chosen with their `prior` cost, too: no other word of like sound crowds out one that is expected.
-        """
-        found = self._search(utterance, self._any, prior, FREE_BEAM)
+    def freely(self, utterance: EncodedUtterance) -> list[Decoded]:
+        """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first."""
+        found = self._search(utterance, self._any, lambda text: 0.0, FREE_BEAM)
         return [Decoded(self._spelled(f.numbers[:-1]), f.log_probability, f.numbers) for f in found]
 
     def _spelled(self, numbers: Iterable[int]) -> str:
@@ -127,18 +124,12 @@ class Moonshine:
         The `prior` cost of a whole sentence is taken from its log-probability. Of hypotheses that read the same only
         the best is kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
         """
-        return self._search(utterance, trie, prior, self._beam, whole=True)
+        return self._search(utterance, trie, prior, self._beam)
 
     def _search(
-        self,
-        utterance: EncodedUtterance,
-        trie: TokenTrie | AnyTokens,
-        prior: Callable[[str], float],
-        width: int,
-        whole: bool = False,
+        self, utterance: EncodedUtterance, trie: TokenTrie | AnyTokens, prior: Callable[[str], float], width: int
     ) -> list[Decoded]:
-        """The sentences of a beam of that `width`; the `prior` cost is of beginnings, or only of `whole` sentences."""
-        begun = (lambda text: 0.0) if whole else prior
+        """The sentences of a beam of that `width`."""
         scores, cache = self._first(utterance)
         beam = [BeamHypothesis(0.0, (), trie.start, "")]
         finished: dict[str, tuple[float, Decoded]] = {}
@@ -147,7 +138,7 @@ class Moonshine:
                 if hypothesis.text.strip() and trie.is_final(hypothesis.state):
                     _finish(hypothesis, float(scores[row, EOS]), prior, finished)
             leader = max((worth for worth, _ in finished.values()), default=-np.inf)
-            kept = self._continued(beam, scores, trie, begun, leader, width)
+            kept = self._continued(beam, scores, trie, leader, width)
             if not kept:
                 break
             beam = [hypothesis for hypothesis, _ in kept]
@@ -160,18 +151,11 @@ class Moonshine:
         return self._decoder.step(utterance.attended, self._decoder.empty_cache(utterance.variants), [0], [BOS])
 
     def _continued(
-        self,
-        beam: list[BeamHypothesis],
-        scores: Array,
-        trie: TokenTrie | AnyTokens,
-        prior: Callable[[str], float],
-        leader: float,
-        width: int,
+        self, beam: list[BeamHypothesis], scores: Array, trie: TokenTrie | AnyTokens, leader: float, width: int
     ) -> list[tuple[BeamHypothesis, int]]:
-        """The best hypotheses one token longer, by what they cost besides, each with the row of the one it goes on
-        from.
+        """The best hypotheses one token longer, each with the row of the one it goes on from.
 
-        `leader` is the log-probability of the best sentence that is finished, less what that costs.
+        `leader` is the log-probability of the best sentence that is finished.
         """
         options: dict[str, tuple[BeamHypothesis, int]] = {}
         for row, hypothesis in enumerate(beam):
@@ -183,9 +167,8 @@ class Moonshine:
                 if text not in options or total > options[text][0].total:
                     longer = BeamHypothesis(total, (*hypothesis.numbers, number), after[k], text)
                     options[text] = longer, row
-        worth = {text: option[0].total - prior(text) for text, option in options.items()}
-        kept = sorted(options, key=lambda text: -worth[text])[:width]
-        return [options[text] for text in kept if worth[text] > max(leader, worth[kept[0]]) - BEAM_THRESHOLD]
+        kept = sorted(options.values(), key=lambda o: -o[0].total)[:width]
+        return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
 
     def begun_with(self, numbers: tuple[int, ...], sentence: Decoded) -> list[Decoded]:
         """The sentence with these tokens in place of none of its words, of its first one, and so on.

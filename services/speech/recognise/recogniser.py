@@ -14,7 +14,7 @@ from common.language.normalise import normalise
 from common.language.wordings import INTERRUPTS
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
-from services.speech.recognise.scoring import Expected, likeliest, prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import likeliest, prior_cost, rescored, time_scaled
 from services.speech.recognise.wake_text import clauses, without_wake
 
 if TYPE_CHECKING:
@@ -73,23 +73,20 @@ class Recogniser:
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
     verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
     Of transcriptions without the grammar that sound alike, `cost` tells which is unlikely to be said to the robot: a
-    negative log-probability; `expected` are single words that are likely to be.
+    negative log-probability.
     """
 
-    def __init__(
-        self, config: SpeechConfig, grammars: dict[Scope, Grammar], cost: Callable[[str], float], expected: Expected
-    ) -> None:
+    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar], cost: Callable[[str], float]) -> None:
         from services.speech.recognise.moonshine import Moonshine
         from services.speech.recognise.token_trie import TokenTrie
 
-        self._config, self._cost, self._expected = config, cost, expected
+        self._config, self._cost = config, cost
         self._model = Moonshine(config.beam)
         self._trie: Callable[[Grammar], TokenTrie] = lambda grammar: TokenTrie(self._model.tokens, grammar)
         self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
 
-    def learn(self, household: Household, names: Sequence[str], expected: Expected) -> None:
+    def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for these names of things from now on, beside what the configuration and the household have."""
-        self._expected = expected
         found = grammars(self._config, household, names)
         self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 
@@ -123,9 +120,7 @@ class Recogniser:
         known = not rest or (verdict == "accept" and normalise(rest) == command.text)
         if scope == "interrupt" or mistaken or known or certainty >= CLEAR:
             return heard
-        return self._among_others(
-            heard, self._model.freely(encoded, self._expected.cost), score_again, scope == "woken"
-        )
+        return self._among_others(heard, self._model.freely(encoded), score_again, scope == "woken")
 
     def _among_others(
         self,

@@ -1,7 +1,7 @@
 """Hypothesis scoring: which of the sentences that the grammar allows was said, and how sure that is. Pure."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -37,29 +37,6 @@ class ScoredSentence(Protocol):
     def log_probability(self) -> float: ...
     @property
     def tokens(self) -> int: ...
-
-
-EXPECTED = 1.5
-"""How much likelier an expected word is said to the robot than it is elsewhere, a natural logarithm (chosen: as much as
-a transcription gains in `free_text.COSTS` where all its words are known)."""
-
-
-class Expected:
-    """Single words that are likely to be said; `cost` is of the beginning of a sentence, a negative log-probability.
-
-    A word that is not at its end counts by how much there is of it.
-    """
-
-    def __init__(self, words: Iterable[str]) -> None:
-        self._shares: dict[str, float] = {}
-        for word in words:
-            for k in range(1, len(word) + 1):
-                self._shares[word[:k]] = max(k / len(word), self._shares.get(word[:k], 0.0))
-
-    def cost(self, text: str) -> float:
-        *whole, last = text.split() or [""]
-        shares = [self._shares.get(word, 0.0) for word in whole]
-        return -EXPECTED * (sum(share for share in shares if share == 1.0) + self._shares.get(last, 0.0))
 
 
 S = TypeVar("S", bound=ScoredSentence)
