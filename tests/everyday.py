@@ -9,6 +9,8 @@ import msgspec
 
 from common import config
 from common.household import load_household
+from common.language.contractions import expand
+from common.language.normalise import normalise
 from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
 from common.plan_rules import known_world, objection
 from services.brain.language.choosing import chosen
@@ -230,8 +232,9 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     kind, colon, rest = reading.partition(": ")
     if colon and kind in ("queue", "replace"):
         return found.kind == kind and _fits(rest, sentence, found._replace(kind=""))
-    if reading in ("stop()", "yes()", "no()"):
-        return found.kind in {"stop()": ("stop", "cancel"), "yes()": ("yes",), "no()": ("no",)}[reading]
+    if reading in ("stop()", "pause()", "yes()", "no()"):
+        stops = ("stop", "cancel")
+        return found.kind in {"stop()": stops, "pause()": stops, "yes()": ("yes",), "no()": ("no",)}[reading]
     if choice := re.fullmatch(r"pick\(([^()]+)\)", reading):
         return found.kind in [f"pick {label}" for label in choice[1].split("/")]
     if reading == "return()" and found.kind == "come_back":
@@ -373,7 +376,7 @@ def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
             said = act[1].lower() if act[0] == "say" else ""
             return bool(said) and all(any(w.lower() in said for w in part.split("|")) for part in args.split(", "))
         case "say":
-            return act[0] == "say" and re.sub(r"\W+", " ", act[1].lower()).strip() == re.sub(r"\W+", " ", first)
+            return act[0] == "say" and _bare(act[1]) == _bare(first)
         case "put":
             return act[0] == "put" and _named(first, act[1], act[3]) and act[2] in second.split("/")
         case "fetch" | "take" | "find":
@@ -383,9 +386,14 @@ def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
         case "wait" | "goto" | "grip" | "teach" | "forget" | "place" | "norule":
             return act[:2] == (name, first)
         case "rule":
-            return act == (name, first, second)
+            return act == (name, first.removesuffix("s"), second)
         case _:
             return False
+
+
+def _bare(text: str) -> str:
+    """Words that are said, in full."""
+    return expand(normalise(text.lower().replace("\u2019", "'")))
 
 
 def _named(options: str, label: str, words: str) -> bool:

@@ -19,7 +19,7 @@ NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
 """Words that no name of a thing has, and those before another thing, which is not the same as the one before."""
 _GOES_ON = frozenset({"for", "except", "than", "and", "or", "then", "but", "not", "with", "to", "as"})
 _ANY = re.compile(r"\b(an? (\w+)), (?:any|either|whichever)(?: (?:\2|one|of them|will do|you (?:like|want)))?\b")
-_WHICH_ONE = re.compile(r"^(?:the|a|an|my) (?:\w+ ){1,2}one$")
+_WHICH_ONE = re.compile(r"^(?P<one>(?:the|a|an|my) (?:\w+ ){1,2}one)(?:,? (?:and |but )?not (?:the )?\w+(?: one)?)?$")
 _ANY_ONE = re.compile(
     r"^(?:any|either|whichever|it does not matter which|i do not (?:mind|care))(?: one| (?:one )?will do)?$"
 )
@@ -45,18 +45,15 @@ def apposed(text: str) -> str:
         said = words[begin:end]
         if _ANY_ONE.match(part) and said:
             continue
+        one = _WHICH_ONE.match(part)
         of_it = (
-            _WHICH_ONE.match(part)
-            and "not" not in words
-            and end - begin > 1
-            and "one" not in said
-            and not ALIKE.keys() & set(said[1:-1])
+            one and "not" not in words and end - begin > 1 and "one" not in said and not ALIKE.keys() & set(said[1:-1])
         )
-        if not of_it:
+        if one is None or not of_it:
             kept.append(part)
             continue
         name = " ".join(w for w in said[1:] if w not in WHICH)
-        kept[-1], merged = " ".join((*words[:begin], part.removesuffix("one").strip(), name, *words[end:])), True
+        kept[-1], merged = " ".join((*words[:begin], one["one"].removesuffix("one").strip(), name, *words[end:])), True
     return ", ".join(kept)
 
 

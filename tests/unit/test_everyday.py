@@ -395,7 +395,8 @@ def test_a_paraphrase_means_the_likeliest_command(said: str, meant: str) -> None
 @pytest.mark.parametrize(
     ("said", "thing"),
     [("bring me the rubber duck", "rubber duck"), ("bring me the sugar", "sugar"),
-     ("get me the toy robot please", "toy robot"), ("bring me the red mug robot", "red mug")],
+     ("get me the toy robot please", "toy robot"), ("bring me the red mug robot", "red mug"),
+     ("get me a can, the red one not the green", "red can")],
 )  # fmt: skip
-def test_a_name_of_a_thing_is_no_term_of_address(said: str, thing: str) -> None:
+def test_one_thing_is_looked_for_by_all_of_its_name(said: str, thing: str) -> None:
     assert [step.object for step in planned(said).steps if step.action == "find"] == [thing]
