@@ -152,17 +152,15 @@ class Viewpoints:
         cost: Callable[[Pose2], float],
         free: Callable[[Pose2], bool],
         likelihood: Array | None = None,
-        near: bool = False,
     ) -> Pose2 | None:
         """The pose, not yet `tried`, that shows the most for its way; None when none is worth it.
 
         `worth` (p,) is what each point counts, `cost` the way to a pose [m], inf where none leads, `free` whether the
         base can stand there. `likelihood` (p,) that what is looked for is at a point, the mean being 1, decides what
-        is looked at first, and nothing about what is looked at in the end. `near`: only what is near counts.
+        is looked at first, and nothing about what is looked at in the end.
         """
-        shows = self.near if near else self.shows
-        news = shows @ worth
-        gains = news if likelihood is None else shows @ (worth * likelihood)
+        news = self.shows @ worth
+        gains = news if likelihood is None else self.shows @ (worth * likelihood)
         best, best_score = None, 0.0
         for n in np.flatnonzero(news >= LEAST_GAIN).tolist():
             pose = self.poses[n]

@@ -114,7 +114,8 @@ def points_at(place: str, household: Household, viewpoints: Viewpoints) -> Mask:
 def _prior(kind: str, household: Household, surfaces: Sequence[Receptacle]) -> Array:
     """Weights of surfaces before any sighting: by room for things, and by where the kind is put away."""
     rule = next((d for d in household.words.tidy if not d.names and not d.colours and kind in d.kinds), None)
-    weights = np.array([r.size[0] * r.size[1] for r in surfaces])
+    # A small surface is as good for putting things down: the root of its area.
+    weights = np.array([math.sqrt(r.size[0] * r.size[1]) for r in surfaces])
     if kind and rule is not None:
         goes = {r.name for to in rule.to if (r := household.receptacle(to)) is not None} | set(rule.to)
         weights *= [BELONGS if r.name in goes or r.kind in goes else 1.0 for r in surfaces]

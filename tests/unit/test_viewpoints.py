@@ -186,3 +186,17 @@ def test_sofas_and_beds_are_looked_at_once_no_table_is_left() -> None:
         looked_from.append(view)
     assert views.visible(looked_from[0])[~on_sofa].any(), "the sofa is nearer"
     assert views.covered(looked_from)[on_sofa].mean() > 0.9
+
+
+def test_a_shelf_beside_the_robot_is_not_passed_by_and_come_back_to() -> None:
+    def surface(name: str, x: float, length: float) -> Receptacle:
+        return Receptacle(name=name, kind="table", center=(x, 3.6, 0.6), size=(length, 0.6), approach=((0.0, -1.0),))
+
+    flat = Household(
+        name="flat", low=(-1.0, 0.0), high=(10.0, 4.0), home=Place(name="home", x=0.5, y=2.0),
+        receptacles=(surface("shelf", 0.0, 0.5), surface("table", 4.0, 1.6), surface("desk", 9.0, 1.6)),
+    )  # fmt: skip
+    views = Viewpoints(flat, NOMINAL)
+    first = viewpoint_search.elsewhere(flat, views, (0.5, 2.0, -1.57), [])
+    assert first is not None
+    assert views.visible(first)[views.surface == 0].any()

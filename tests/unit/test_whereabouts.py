@@ -44,6 +44,13 @@ def test_rules_of_people_move_the_estimate_of_what_was_never_seen() -> None:
     assert shares("mug", HOME, [], 0.0)["counter"] > shares("thing", HOME, [], 0.0)["counter"]
 
 
+def test_a_small_surface_is_likelier_than_by_its_area() -> None:
+    large, small = (next(r for r in HOME.receptacles if r.name == name) for name in ("counter", "bedside table"))
+    areas = [r.size[0] * r.size[1] for r in (large, small)]
+    found = shares("thing", HOME, [], 0.0)
+    assert found[large.name] / found[small.name] == pytest.approx((areas[0] / areas[1]) ** 0.5)
+
+
 def test_old_visits_count_less_and_the_last_one_fades() -> None:
     assert decayed(seen("keys", "counter", 4.0), HALF_LIFE) == pytest.approx(2.0)
     sightings = [seen("keys", "bookshelf", 4.0, last=0.0), seen("keys", "counter", 1.0, last=DAY)]

@@ -14,7 +14,7 @@ from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from common.grid_graph import graph_of, nearest_free
-from common.viewpoints import NEAR, Mask, Viewpoints
+from common.viewpoints import LEAST_GAIN, LOOK_COST, NEAR, Mask, Viewpoints
 from common.viewpoints import REACH as FAR
 
 Point = tuple[float, float]
@@ -25,6 +25,8 @@ REACH = 1
 AMPLE = 0.48
 """Free floor around a viewpoint [m] that is preferred; chosen: the footprint's radius 0.29 and what an unknown chair
 takes of it. Where a surface shows from narrower places only, these are taken in the end."""
+CANDIDATES = 6
+"""Viewpoints of which it is worked out how the search would go on from them [count]; chosen: twelve are no better."""
 TRIES = 2
 """Times that a viewpoint is driven to in vain before it is given up [count]."""
 
@@ -46,32 +48,24 @@ def elsewhere(
     told: Mask | None = None,
     flat: bool = False,
 ) -> Pose2 | None:
-    """The viewpoint that shows most that is new for the way there; None when everything has been looked at.
+    """The viewpoint to go to for what is found soonest on the whole way; None when everything has been looked at.
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
     takes it. The points (p,) where it is `told` to be come first, sofas and beds last; where it may lie `flat` these
     points, and in the end the other tables and shelves, are looked at from near as well.
     """
-    ways = Ways(floor_plan, (here[0], here[1]))
-
-    def cost(to: Pose2) -> float:
-        return ways.length((to[0], to[1]))
-
-    def ample(to: Pose2) -> bool:
-        return ways.room((to[0], to[1])) >= AMPLE and math.isfinite(cost(to))
-
-    def fits(to: Pose2) -> bool:
-        return math.isfinite(cost(to))
-
+    views = _Views(floor_plan, viewpoints, likelihood)
     unseen, far, failed = _unseen(viewpoints, looked_from), _unseen(viewpoints, looked_from, NEAR), Counter(unreached)
     at = told if told is not None else np.zeros(len(unseen), bool)
     orders = [(unseen * at, False), (far * at, True), (unseen * viewpoints.listed, False), (unseen, False)]
     orders = [*orders, (far * viewpoints.listed, True)] if flat else [o for o in orders if not o[1]]
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        for (worth, near), free in product(orders, (ample, fits)):
-            if (found := viewpoints.best(worth, tried, cost, free, likelihood, near)) is not None:
+        left = np.array([pose not in tried for pose in viewpoints.poses], bool)
+        for (worth, near), room in product(orders, (AMPLE, 0.0)):
+            shows = viewpoints.near if near else viewpoints.shows
+            if (found := views.next(here, shows, worth, left & (views.room >= room))) is not None:
                 return found
     return None
 
@@ -82,21 +76,53 @@ def _unseen(viewpoints: Viewpoints, looked_from: Collection[Pose2], reach: float
     return unseen
 
 
-# --- how far the base has to drive from where it stands, by the floor plan alone
-class Ways:
-    """Lengths of the shortest ways over a floor plan from one point [map]."""
+class _Views:
+    """The viewpoints (v) of a search, with the ways between them by the floor plan alone.
 
-    def __init__(self, floor_plan: FloorPlan, start: Point) -> None:
-        self._ground = _ground(floor_plan)
-        self._lengths = self._ground.lengths(start)
+    `room` (v,): distance [m] from each to the nearest wall, furniture or surface.
+    """
 
-    def length(self, to: Point) -> float:
-        """Length [m] of the way to a point [map]; inf where none leads or the base does not fit."""
-        return float(self._lengths[self._ground.cells.cell(*to)])
+    def __init__(self, floor_plan: FloorPlan, viewpoints: Viewpoints, likelihood: Array | None) -> None:
+        self._poses, self._ground = viewpoints.poses, _ground(floor_plan)
+        self._likely = np.ones(len(viewpoints.points)) if likelihood is None else likelihood
+        cells = np.array([self._ground.cells.cell(x, y) for x, y, _ in self._poses], int).reshape(-1, 2)
+        self._cells = cells[:, 0], cells[:, 1]
+        self.room: Array = self._ground.distance[self._cells]
+        self._lengths: dict[Point, Array] = {}
 
-    def room(self, at: Point) -> float:
-        """Distance [m] from a point [map] to the nearest wall, furniture or surface."""
-        return float(self._ground.distance[self._ground.cells.cell(*at)])
+    def next(self, here: Pose2, shows: Mask, worth: Array, left: Mask) -> Pose2 | None:
+        """The one of the viewpoints that are `left` (v,) with which a search finds soonest; None when none is worth it.
+
+        `shows` (v, p): what counts as shown, `worth` (p,): what each point counts. By what each of the best shows for
+        the way there alone, a shelf beside the robot would be passed by and come back to in the end.
+        """
+        best = self._best(here, shows, worth, left, CANDIDATES)
+        first = min(best, key=lambda n: self._delay(here, n, shows, worth, left), default=None)
+        return self._poses[first] if first is not None else None
+
+    def _best(self, start: Pose2, shows: Mask, worth: Array, left: Mask, most: int) -> list[int]:
+        """Those that show most of what is likely for the way there from `start`, the best first."""
+        score: Array = shows @ (worth * self._likely) / (self._ways(start) + LOOK_COST)
+        score[~left | (shows @ worth < LEAST_GAIN)] = 0.0
+        return [n for n in np.argsort(-score, kind="stable")[:most].tolist() if score[n] > 0.0]
+
+    def _delay(self, start: Pose2, first: int | None, shows: Mask, worth: Array, left: Mask) -> float:
+        """The way [m] of a search that begins with `first` up to where each point is seen, weighed by likelihood."""
+        way = total = 0.0
+        left = left.copy()
+        while first is not None:
+            way += float(self._ways(start)[first]) + LOOK_COST
+            total += way * float((worth * self._likely)[shows[first]].sum())
+            worth, start, left[first] = worth * ~shows[first], self._poses[first], False
+            first = next(iter(self._best(start, shows, worth, left, 1)), None)
+        return total + way * float((worth * self._likely).sum())
+
+    def _ways(self, start: Pose2) -> Array:
+        """Lengths (v,) [m] of the ways from a pose; inf where none leads or the base does not fit."""
+        at = start[0], start[1]
+        if at not in self._lengths:
+            self._lengths[at] = self._ground.lengths(at)[self._cells]
+        return self._lengths[at]
 
 
 class _Ground:
