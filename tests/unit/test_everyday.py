@@ -64,8 +64,9 @@ LEAST = {
     "33": Least(0.39, 0.67, 9),
     "34": Least(0.56, 0.59, 15),
     "35": Least(0.74, 0.84, 8),
-    "36": Least(0.5, 0.71, 47),
-    "37": Least(0.61, 0.84, 20),
+    "36": Least(0.5, 0.72, 42),
+    "37": Least(0.61, 0.87, 13),
+    "38": Least(0.61, 0.81, 14),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
