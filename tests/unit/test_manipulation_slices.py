@@ -65,14 +65,13 @@ def test_a_handle_beside_a_body_is_no_part_of_it() -> None:
     assert not ((level[:, 1] > 0.036) & (level[:, 1] < 0.05)).any()
 
 
-def test_only_into_what_is_seen_to_be_open_a_finger_goes() -> None:
+@pytest.mark.parametrize("kind", ["mug", ""])
+def test_only_into_what_is_seen_to_be_open_a_finger_goes(kind: str) -> None:
     """A vessel's far wall is seen from inside; of a jug with its lid on, or a money box, only what faces the robot."""
     outside = front((0.05, 0.05), -0.04, 0.04)
     lid = np.array([(r * math.cos(t), r * math.sin(t), 0.04) for r in (0.01, 0.03) for t in np.arange(0, 6.3, 0.6)])
     inside = front((0.046, 0.046), -0.01, 0.035) * (-1.0, 1.0, 1.0)
-    closed = Target(
-        "thing", "mug", AT, 0.0, (0.1, 0.1, 0.08), 0.0, "round", np.concatenate([outside, lid]), 0.003, True
-    )
+    closed = Target("thing", kind, AT, 0.0, (0.1, 0.1, 0.08), 0.0, "round", np.concatenate([outside, lid]), 0.003, True)
     vessel = replace(closed, points=np.concatenate([outside, inside]))
     assert seen_open(vessel) and not seen_open(closed) and seen_open(replace(closed, measured=False))
     assert any(g.rim for g in candidates(vessel, 0.0, 0.0761))

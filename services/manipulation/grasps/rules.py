@@ -67,7 +67,9 @@ def _standing(target: Target, facing: float, widest: float) -> list[Grasp]:
     tall = target.size[2]
     makers = {"around": _round, "faces": _flat, "rim": _rim}
     rules = _rules(target)
-    if kind_of(target.kind).wall and min(target.size[:2]) > widest and all(r.hold != "rim" for r in rules):
+    # What is round and was not seen to be open loses these below.
+    vessel = kind_of(target.kind).wall or (target.measured and target.shape == "round")
+    if vessel and min(target.size[:2]) > widest and all(r.hold != "rim" for r in rules):
         rules = (*rules, *OPEN_VESSEL)
     if not seen_open(target):
         rules = tuple(r for r in rules if r.hold != "rim")
