@@ -9,7 +9,7 @@ from common.language.exchange import replaced
 from common.language.meaning import is_question
 from common.language.quantities import duration
 from services.brain.language.interjection import interjection
-from services.planner.grammar.spelling import corrected, distance
+from services.planner.grammar.spelling import corrected, distance, renamed
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.forms import tokens
 from services.planner.semantic.parse import parse
@@ -292,6 +292,12 @@ def test_slips_are_undone_and_names_are_told_apart() -> None:
     assert corrected(["brng", "teh", "blu", "bottle"], plain, names) == (["bring", "the", "blue", "bottle"], False)
     assert corrected(["the", "botle"], plain, names) == (["the", "bottle"], True)
     assert corrected(["the", "cat"], plain, names) == (["the", "cat"], False), "short names are left alone"
+
+
+def test_a_kind_with_its_colour_is_no_other_name_misheard() -> None:
+    colours, kinds, names = {"green", "blue"}, {"bowl", "bottle"}, ["green bottle", "dresser"]
+    assert renamed(["the", "green", "bowl"], names, colours, kinds) == ["the", "green", "bowl"]
+    assert renamed(["the", "green", "bole"], names, colours, kinds) == ["the", "green", "bottle"]
 
 
 def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> None:

@@ -156,7 +156,7 @@ class Attempts:
         right, named = corrected(bare, colours | WORDS, names)
         text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
         if right == bare:
-            right, named = renamed(bare, self._vocabulary.names()), True
+            right, named = renamed(bare, self._vocabulary.names(), colours, names), True
             text = " ".join(right)
         if right == bare or (named and literally):
             return None

@@ -1,7 +1,7 @@
 """Slips of typed words: `teh blu botle` as `the blue bottle`, by edit distance to the words that are known. Pure."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from functools import lru_cache
 
 from common.language.normalise import REMEMBERED
@@ -43,10 +43,11 @@ def corrected(words: Sequence[str], plain: Iterable[str], names: Iterable[str]) 
     return found, named
 
 
-def renamed(words: Sequence[str], names: Iterable[str]) -> list[str]:
+def renamed(words: Sequence[str], names: Iterable[str], colours: Container[str], kinds: Container[str]) -> list[str]:
     """Words with a run of them replaced by the only name that sounds much like it: `the dress her` as `the dresser`.
 
-    The words as they are where there is no such name, or several.
+    The words as they are where there is no such name, or several. A kind with its colours describes a thing of its own,
+    however much it sounds like another: `the green bowl` beside a green bottle.
     """
     sounds = {name: _sound(name.replace(" ", "")) for name in names}
     runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(0, b - LONGEST_RUN), b)]
@@ -54,7 +55,8 @@ def renamed(words: Sequence[str], names: Iterable[str]) -> list[str]:
         said = _sound("".join(words[begin:end]))
         allowed = len(said) // SOUNDS_PER_SLIP
         spelled = " ".join(words[begin:end])
-        if len(said) < LONG_WORD or spelled in sounds:
+        described = end - begin > 1 and words[end - 1] in kinds and all(w in colours for w in words[begin : end - 1])
+        if len(said) < LONG_WORD or spelled in sounds or described:
             continue
         near = {n for n, s in sounds.items() if abs(len(s) - len(said)) <= allowed and distance(s, said) <= allowed}
         if len(near) == 1 and (end - begin > 1 or " " in next(iter(near))):
