@@ -54,6 +54,8 @@ TAKEN_FOR = (
     frozenset({"ball", "apple", "orange", "lemon"}),
 )  # fmt: skip
 """Kinds that are taken for each other when a handle, a neck or the inside is hidden or dark."""
+CALLED_ALIKE = {"mug", "cup"}
+"""Kinds that go by each other's word: one is asked about at once as the other, an egg cup that was heard as a mug."""
 
 
 def likeness(phrase: str, o: WorldObject, household: Household) -> float:
@@ -210,12 +212,14 @@ def _has_kind(kind: str, o: WorldObject) -> float:
     if _is_ball(kind) != _is_ball(max(shares, key=lambda k: shares[k])):
         # Balls and what stands on a foot are taken for each other only where most is hidden.
         return HIDDEN * shares.get(kind, 0.0) / best if o.kind_shares else 0.0
-    near = any(kind in group and o.kind in group for group in TAKEN_FOR)
+    near = NEAR_KIND * any(kind in group and o.kind in group for group in TAKEN_FOR)
+    if {kind, o.kind} == CALLED_ALIKE:
+        near = UNSEEN
     has = shares.get(kind, 0.0) / best
     if o.kind_shares and kind != o.kind:
         has = min(has, NOT_CALLED)
     shapeless = max(NO_KIND, min(ANY_SHAPE, SHAPED * (1.0 - _shaped(o)))) if kind in SHAPELESS else 0.0
-    return max(has, NEAR_KIND * near, NO_KIND * (o.kind == OTHER), shapeless)
+    return max(has, near, NO_KIND * (o.kind == OTHER), shapeless)
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:

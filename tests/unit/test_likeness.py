@@ -244,3 +244,8 @@ def test_a_thing_of_no_shape_may_be_what_is_told_to_look_like_a_mug() -> None:
     teapot = measured("blue toy", {"toy": 0.56, "tool": 0.31, "carton": 0.13}, {"blue": 1.0})
     assert LEAST < partly("teapot", teapot, HOUSEHOLD) < LIKELY
     assert partly("teapot", measured("blue box", {"box": 1.0}, {"blue": 1.0}), HOUSEHOLD) == 0.0
+
+
+def test_a_cup_goes_by_the_word_for_a_mug() -> None:
+    cup = measured("yellow cup", {"cup": 0.6, "jar": 0.4}, {"yellow": 1.0})
+    assert partly("egg mug", cup, HOUSEHOLD) > LIKELY and LIKELY < likeness("mug", cup, HOUSEHOLD) < PLAIN

@@ -52,3 +52,16 @@ def test_a_patch_of_another_colour_is_a_thing_where_it_lifts_as_a_whole(thick: f
         above(rgb, np.full((120, 160), HIGH, np.float32)), pixels, heights.ravel().astype(np.float32), pixels < 0
     )
     assert (len(rows) > 300) == seen
+
+
+@pytest.mark.parametrize(("thick", "seen"), [(0.008, True), (0.05, False)], ids=["a ring of scissors", "what stands"])
+def test_the_rest_of_a_thin_thing_is_seen_with_what_stands_out_of_the_noise(thick: float, seen: bool) -> None:
+    rgb = np.full((120, 160, 3), TABLE, np.uint8)
+    rgb[50:56, 50:93] = RED
+    heights = np.zeros((120, 160), np.float32)
+    heights[50:56, 50:90], heights[50:56, 90:93] = thick, 0.002
+    rows, columns = patches(
+        above(rgb, np.full((120, 160), HIGH, np.float32)), np.arange(heights.size), heights.ravel(),
+        heights.ravel() > 0.004,
+    )  # fmt: skip
+    assert (len(rows) > 0 and set(columns) >= {90, 91, 92}) == seen

@@ -1,6 +1,7 @@
 """Objects that touch in the picture are cut apart; what is printed on one does not cut it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -133,6 +134,8 @@ def test_a_blade_and_its_handle_are_one() -> None:
     assert jointed(view, tool, cut, 0.0015) is None
     on_it = ((np.abs(tool.points[:, 1] - 0.05) < 0.02) & (tool.points[:, 2] > FLOOR + 0.03)).astype(np.intp)
     assert jointed(view, tool, on_it, 0.0015) is not None, "what lies on another meets it all round"
+    far = replace(view, depth=(view.depth + 0.03 * (view.points[..., 1] > 0)).astype(np.float32))
+    assert jointed(far, tool, cut, 0.0015) is not None, "a side that another hides"
     view, high = rod([GREEN, RED], [0.03, 0.045])
     assert jointed(view, high, (high.points[:, 1] > 0.0).astype(np.intp), 0.0015) is not None
 

@@ -12,6 +12,8 @@ another stands higher."""
 SHORT = 0.3
 """Share of the smaller piece's outline at which they meet, up to which that is a joint. Chosen: a handle meets its
 blade at a tenth, a pen the book that it lies on all round."""
+THREAD = 0.05
+"""The same, up to which it is one whatever the step: what hides a part of another does so along a side."""
 STEP, STEP_NOISE = 0.006, 2.0
 """Step of depth [m] at that line, plus that of noise, up to which one goes on in the other."""
 
@@ -37,8 +39,9 @@ def jointed(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) -
     for a in range(len(outline)):
         for b in range(a):
             meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
-            short = 0 < len(meet) < SHORT * min(outline[a], outline[b])
-            if short and np.quantile(meet, 0.25) < STEP + STEP_NOISE * noise:
+            share = len(meet) / min(outline[a], outline[b])
+            goes_on = 0 < share < SHORT and np.quantile(meet, 0.25) < STEP + STEP_NOISE * noise
+            if goes_on or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
     left, found = np.unique(names[cut], return_inverse=True)
     return found.reshape(-1).astype(np.intp) if len(left) > 1 else None
