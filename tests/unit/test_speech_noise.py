@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
-from services.speech.recognise.moonshine import EncodedUtterance, Moonshine
-from services.speech.recognise.recogniser import PreparedUtterance, confidence_of, verdict_of
+from services.speech.recognise.moonshine import Decoded, EncodedUtterance, Moonshine
+from services.speech.recognise.recogniser import PreparedUtterance, Recogniser, confidence_of, verdict_of
 from services.speech.recognise.scoring import CANDIDATES, Choice, likeliest, prior_cost, rescored, time_scaled
 from services.speech.recognise.token_trie import BOS, EOS, AnyTokens
 from tests.support import ROOT
@@ -188,4 +188,31 @@ class Breath:
 def test_silence_is_no_transcription_of_what_was_said() -> None:
     model = object.__new__(Moonshine)
     model.tokens, model._any, model._decoder = TOKENS, AnyTokens(TOKENS), Breath()  # type: ignore[assignment]
-    assert [said.text for said in model.freely(EncodedUtterance({}, 1, 2))] == ["mug"]
+    assert [said.text for said in model.freely(EncodedUtterance({}, 1, 2), lambda text: 0.0)] == ["mug"]
+
+
+class Transcriber:
+    """A network to which the beginning of what was said sounds likelier than all of it."""
+
+    def encode(self, _variants: object) -> None: ...
+
+    def free(self, _heard: None) -> Decoded:
+        return Decoded("I can't", -2.0, (3, EOS))
+
+    def best(self, *_: object) -> list[Decoded]:
+        return [Decoded("wait", -20.0, (3, EOS))]
+
+    def freely(self, *_: object) -> list[Decoded]:
+        return [self.free(None), Decoded("I can't reach the mug on the shelf", -6.0, (3, EOS))]
+
+    def log_probabilities(self, _heard: None, sentences: list[Decoded]) -> list[float]:
+        return [said.log_probability for said in sentences]
+
+
+def test_a_transcription_has_to_fit_the_time_that_was_spoken() -> None:
+    recogniser = object.__new__(Recogniser)
+    recogniser._config, recogniser._cost = CONFIG, lambda text: 0.0
+    recogniser._model, recogniser._tries = Transcriber(), {"command": None}  # type: ignore[assignment, dict-item]
+    for seconds, text in ((0.6, "I can't"), (2.0, "I can't reach the mug on the shelf")):
+        heard = PreparedUtterance(np.zeros((1, RATE), np.float32), seconds)
+        assert recogniser.recognise(heard, "command").free == text

@@ -110,9 +110,9 @@ class Moonshine:
             scores, cache = self._decoder.step(utterance.attended, cache, [0], [best])
         return Decoded(self._spelled(numbers), total, (*numbers, EOS))
 
-    def freely(self, utterance: EncodedUtterance) -> list[Decoded]:
+    def freely(self, utterance: EncodedUtterance, prior: Callable[[str], float]) -> list[Decoded]:
         """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first."""
-        found = self._search(utterance, self._any, lambda text: 0.0, FREE_BEAM)
+        found = self._search(utterance, self._any, prior, FREE_BEAM)
         return [Decoded(self._spelled(f.numbers[:-1]), f.log_probability, f.numbers) for f in found]
 
     def _spelled(self, numbers: Iterable[int]) -> str:

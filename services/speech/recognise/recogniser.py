@@ -120,19 +120,23 @@ class Recogniser:
         known = not rest or (verdict == "accept" and normalise(rest) == command.text)
         if scope == "interrupt" or mistaken or known or certainty >= CLEAR:
             return heard
-        return self._among_others(heard, self._model.freely(encoded), score_again, scope == "woken")
+        others = self._model.freely(encoded, prior)
+        return self._among_others(
+            heard, others, score_again, lambda text: prior(text) + self._cost(text), scope == "woken"
+        )
 
     def _among_others(
         self,
         heard: Recognition,
         others: list["Decoded"],
         score: Callable[[list["Decoded"]], list[float]],
+        cost: Callable[[str], float],
         woken: bool,
     ) -> Recognition:
-        """With the likeliest of other transcriptions, too, by what may be said to the robot."""
+        """With the likeliest of other transcriptions, too, by what may be said to the robot in that time."""
         if not others:
             return heard
-        chosen, share = likeliest(others, score(others), self._cost)
+        chosen, share = likeliest(others, score(others), cost)
         spelled = clauses(chosen.text)
         plain = without_wake(spelled, self._config.wake)
         if woken and plain == spelled:
