@@ -67,6 +67,14 @@ _EMPTIED = re.compile(
     r"(?P<to>(?:on|onto|in|into|to) .+)$"
 )
 """`empty the table, everything onto the shelf`: what is taken from where, and where it goes."""
+_FLOOR_OF = re.compile(
+    r"\b(?P<on>on|from|off) the (?:floor|ground|carpet) (?:in|of) (?:the|my|our) "
+    r"(?P<room>\w+(?: room)?)(?! of\b)(?=[ ,;.!?]|$)"
+)
+_TOP_OF = re.compile(
+    r"\b(?P<on>from|off|on|onto) the (?:very )?(?:top|surface|edge|middle|far end) of (?=(?:the|my|our|that) \w)"
+)
+"""Where something lies, said with more words: on the bedroom floor, on the cabinet."""
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
@@ -80,6 +88,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
+    whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
