@@ -1,4 +1,4 @@
-"""A policy in eighty lines, `manipulation.policy = "examples.reach_policy:FromAbove"`: from above, close, lift.
+"""A policy in some eighty lines, `manipulation.policy = "examples.reach_policy:FromAbove"`: from above, close, lift.
 
 It is called with what a demonstration's frame shows (docs/LEARNING.md) and answers as its action; a learned policy
 would look at the pictures, this one at `object.position`, which the robot tells beside them.
@@ -20,6 +20,8 @@ BEGIN = 0.135
 """How far [m] above the surface the pads begin at least: on their way there they pass its edge."""
 DEPTH, PALM = 0.01, 0.035
 """How far [m] below the object's middle the pads close, and at most below its top, where the palm would meet it."""
+CLEAR = 0.022
+"""How far [m] above the surface the pads' middle stays: they come lower on their arc as they close."""
 STEP = 0.04
 """Most that a joint moves from one action to the next [rad]: 0.8 rad/s at 20 Hz."""
 NEAR = 0.004
@@ -58,7 +60,7 @@ class FromAbove:
         self._at = [self._model.joint(j).qposadr[0] for j in ARM]
         self._dof = [self._model.joint(j).dofadr[0] for j in ARM]
         half = seen["object.size"][2] / 2
-        depth = min(DEPTH, PALM - half)
+        depth = min(DEPTH, PALM - half, half - CLEAR)
         middle = np.array(seen["object.position"]) - [0.0, 0.0, depth]
         up = np.array([0.0, 0.0, 1.0])
         self._ways = [middle + (depth + max(half + ABOVE, BEGIN - half)) * up, middle, middle + LIFT * up]

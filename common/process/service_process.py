@@ -189,8 +189,8 @@ class Process:
         tick = round(getattr(self.service, "start_time", 0.0) / DT)
         if lockstep:
             io.log.info("waiting for participants", names=",".join(wait_for))
-            for barrier in barriers:
-                barrier.assemble(self._keep_alive, going_on=tick > 0)
+            # Other robots of this world join when somebody starts them, which may wait for this one.
+            barriers[0].assemble(self._keep_alive, going_on=tick > 0)
         pacer = Pacer(DT, speed) if speed else None
         published: m.SimClockTick | None = None
         while not self._stop.is_set():
