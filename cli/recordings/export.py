@@ -1,11 +1,10 @@
-"""What `tidybot replay` makes of a recording: the page with a time slider, a mission cut out, its timeline."""
+"""What `tidybot replay --export` makes of a recording: a mission cut out, or its timeline with pictures."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from cli.errors import CliError, near
-from cli.processes.programs import become
 from cli.recordings.copies import copy
 from common import topics
 from common.mission_log.recorded import missions
@@ -14,14 +13,6 @@ from common.recording import Recording, Row
 BEFORE, AFTER = 2.0, 2.0
 """Seconds that are kept on either side of a mission."""
 PAGES = (".html", ".htm")
-
-
-def view(path: Path, port: int, at: float | None) -> int:
-    """Become the page on that recording."""
-    if not path.exists():
-        raise CliError(f"{path}: no such file")
-    words = [str(path), "--port", str(port), *(["--at", str(at)] if at is not None else [])]
-    become("services.dashboard.replay.playback", *words)
 
 
 def mission_of(recording: Recording, wanted: str) -> dict[str, Any]:

@@ -196,7 +196,7 @@ def _close(recorder: Recorder) -> None:
         recorder.close()
     except OSError as error:
         raise CliError(
-            f"{recorder.path}: {error.strerror}; `tidybot replay {recorder.path} --repair` saves it"
+            f"{recorder.path}: {error.strerror}; `tidybot replay {recorder.path} --repair FILE` saves it"
         ) from None
     if not recorder.counts:
         recorder.path.unlink(missing_ok=True)

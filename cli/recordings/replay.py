@@ -1,9 +1,9 @@
-"""`tidybot replay`: what is in a recording, the page on it, a mission of it; or a service fed with it and compared."""
+"""`tidybot replay`: what is in a recording, a mission of it; or a service fed with it and compared."""
 
 import argparse
 from pathlib import Path
 
-from cli.errors import CliError, checked, port_number
+from cli.errors import CliError, checked
 from cli.processes.programs import become
 from cli.processes.services import NAMES
 from cli.recordings import export as mission_export
@@ -40,8 +40,6 @@ def replay(args: argparse.Namespace) -> int:
         if args.repair:
             print(f"{repair(args.file, args.repair)} messages into {args.repair}")
             return 0
-        if args.view:
-            return mission_export.view(args.file, args.port, args.at)
         if args.export:
             try:
                 mission_export.export(args.file, args.export, args.mission)
@@ -58,9 +56,8 @@ def replay(args: argparse.Namespace) -> int:
 def _service(args: argparse.Namespace) -> int:
     """Become `python -m evaluation.replay` with the words that concern it."""
     checked(args.service, [n for n in NAMES if n != "router"], "service")
-    words = ["--service", args.service, f"--tolerance={args.tolerance}"]
-    words += [f"--slack={args.slack}"] if args.slack is not None else []
-    become("evaluation.replay", str(args.file), *words, *(word for s in args.set for word in ("--set", s)))
+    changes = (word for s in args.set for word in ("--set", s))
+    become("evaluation.replay", str(args.file), "--service", args.service, *changes)
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -69,18 +66,10 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--info", action="store_true", help="summarise the file (the default without --service)")
     parser.add_argument("--service", metavar="NAME", help="replay to this service; exit 1 when its outputs differ")
     parser.add_argument("--repair", type=Path, metavar="OUT", help="write what a torn file holds into a whole one")
-    parser.add_argument("--view", action="store_true", help="the operator's page on it, with a time slider")
-    parser.add_argument("--port", type=port_number, default=8080, help="of that page (default %(default)s)")
-    parser.add_argument("--at", type=float, metavar="S", help="begin there, paused [s of robot time]")
     parser.add_argument(
         "--export", type=Path, metavar="OUT",
         help="one mission as a recording (.mcap) or its timeline with pictures (.html)",
     )  # fmt: skip
     parser.add_argument("--mission", default="last", metavar="ID", help="which one (default: the last)")
-    parser.add_argument("--tolerance", type=float, default=1e-9, metavar="X", help="for numbers (default %(default)s)")
-    parser.add_argument(
-        "--slack", type=float, metavar="S",
-        help="for times; default 0 for a lockstep run, 0.1 when a client took part, 0.2 in real time",
-    )  # fmt: skip
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.set_defaults(run=replay)

@@ -17,7 +17,7 @@ from common.recording import Recording, RecordingError
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
 from evaluation.registry import service_class
-from evaluation.replay.comparison import Timed, Verdict, compare, decoded
+from evaluation.replay.comparison import TOLERANCE, Timed, Verdict, compare, decoded
 from evaluation.replay.player import Player
 
 SLACK = 0.2
@@ -65,7 +65,7 @@ def _seed(run: dict[str, str], default: int) -> int:
     return int(run.get("seed", default))
 
 
-def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], tolerance: float, slack: float) -> list[Verdict]:
+def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], slack: float) -> list[Verdict]:
     """One verdict for every topic that the service writes."""
     recorded: dict[str, list[Timed]] = {}
     for row in player.recording.rows:
@@ -82,28 +82,26 @@ def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], tolerance:
     for topic in player.kind.WRITES:
         old, new = recorded.get(topic.key, []), replayed.get(topic.key, [])
         if old or new:
-            found.append(compare(topic, old, new, tolerance, slack))
+            found.append(compare(topic, old, new, slack))
     return found
 
 
-def judged(args: argparse.Namespace, player: Player) -> int:
+def judged(player: Player) -> int:
     """Run the player and print a verdict for each topic; 0 when all are the same, else 1."""
     began = monotonic()
     try:
         outputs = player.run(_progress())
     finally:
         player.close()
-    slack = (
-        args.slack if args.slack is not None else 0.0 if player.exact else LOCKSTEP_SLACK if player.lockstep else SLACK
-    )
+    slack = 0.0 if player.exact else LOCKSTEP_SLACK if player.lockstep else SLACK
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr)
-    found = verdicts(player, outputs, args.tolerance, slack)
+    found = verdicts(player, outputs, slack)
     if player.recording.torn:
         print(f"the recording is torn ({player.recording.torn})")
     mode = "lockstep" if player.lockstep else "real time"
     print(f"{player.kind.NAME} over {player.seconds:.1f} s of robot time in {monotonic() - began:.1f} s; {mode}, "
-          f"numbers within {args.tolerance:g}, times within {slack:g} s")  # fmt: skip
+          f"numbers within {TOLERANCE:g}, times within {slack:g} s")  # fmt: skip
     print(f"{'topic':30} {'recorded':>9} {'replayed':>9}  verdict")
     for v in found:
         print(f"{v.key:30} {v.recorded:9} {v.replayed:9}  {'same' if v.same else 'differing: ' + v.difference}")
@@ -127,13 +125,11 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="tidybot replay", description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("--service", required=True)
-    parser.add_argument("--tolerance", type=float, default=1e-9)
-    parser.add_argument("--slack", type=float)
     parser.add_argument("--set", action="append", default=[])
     args = parser.parse_args(argv)
     try:
         with tempfile.TemporaryDirectory(prefix="tidybot-replay-") as workspace:
-            return judged(args, prepared(args, Path(workspace)))
+            return judged(prepared(args, Path(workspace)))
     except (RecordingError, CliError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
         return 1

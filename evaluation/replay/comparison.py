@@ -14,6 +14,8 @@ from common.topic import Topic
 
 EPOCHS = {"epoch", "world"}  # random for every start of a process
 TIMES = {"t", "seen_at", "started"}
+TOLERANCE = 1e-9
+"""Within which numbers are the same, absolute and relative: what another order of additions makes of a double."""
 Timed = tuple[float, m.Message]
 
 
@@ -30,25 +32,23 @@ class Verdict(msgspec.Struct):
         return not self.difference
 
 
-def compare(
-    topic: Topic[Any], recorded: Sequence[Timed], replayed: Sequence[Timed], tolerance: float, slack: float
-) -> Verdict:
-    """Judge one topic. `tolerance` is for numbers (absolute and relative), `slack` for times [s].
+def compare(topic: Topic[Any], recorded: Sequence[Timed], replayed: Sequence[Timed], slack: float) -> Verdict:
+    """Judge one topic; `slack` is for times [s].
 
     Events must come in the same order. Of a stream, with slack, every replayed value must be found among the recorded
     ones of about that time, because a stream may skip values.
     """
     verdict = Verdict(topic.key, len(recorded), len(replayed))
     if topic.keep == "latest" and slack > 0:
-        verdict.difference = _stray(recorded, replayed, tolerance, slack)
+        verdict.difference = _stray(recorded, replayed, slack)
     else:
-        verdict.difference = _ordered(recorded, replayed, tolerance, slack)
+        verdict.difference = _ordered(recorded, replayed, slack)
     return verdict
 
 
-def _ordered(recorded: Sequence[Timed], replayed: Sequence[Timed], tolerance: float, slack: float) -> str:
+def _ordered(recorded: Sequence[Timed], replayed: Sequence[Timed], slack: float) -> str:
     for n, ((t, old), (u, new)) in enumerate(zip(recorded, replayed, strict=False), 1):
-        if where := differs(old, new, tolerance, slack):
+        if where := differs(old, new, slack):
             return f"message {n} at {t:.2f} s: {where}"
         if abs(t - u) > slack + 1e-6:
             return f"message {n} at {t:.2f} s: came at {u:.2f} s"
@@ -61,34 +61,34 @@ def _ordered(recorded: Sequence[Timed], replayed: Sequence[Timed], tolerance: fl
     return ""
 
 
-def _stray(recorded: Sequence[Timed], replayed: Sequence[Timed], tolerance: float, slack: float) -> str:
+def _stray(recorded: Sequence[Timed], replayed: Sequence[Timed], slack: float) -> str:
     if bool(recorded) != bool(replayed):
         return f"{len(recorded)} recorded, {len(replayed)} replayed"
     times = [t for t, _ in recorded]
     for u, new in replayed:
         low, high = bisect_left(times, u - slack - 1e-6), bisect_right(times, u + slack + 1e-6)
-        wrong = [differs(old, new, tolerance, slack) for _, old in recorded[low:high]]
+        wrong = [differs(old, new, slack) for _, old in recorded[low:high]]
         if wrong and all(wrong):
             return f"at {u:.2f} s: {wrong[len(wrong) // 2]}"
     return ""
 
 
-def differs(old: Any, new: Any, tolerance: float, slack: float, name: str = "") -> str:
+def differs(old: Any, new: Any, slack: float, name: str = "", tolerance: float = TOLERANCE) -> str:
     """`field[2].x 1.0 -> 1.1` for the first difference of two values, "" when there is none."""
     if isinstance(old, m.Message) and type(old) is type(new):
         for field in old.__struct_fields__:
             inner = f"{name}.{field}" if name else field
             if field in EPOCHS:
                 continue
-            limit = max(slack, tolerance) if field in TIMES else tolerance
-            if found := differs(getattr(old, field), getattr(new, field), limit, slack, inner):
+            limit = max(slack, TOLERANCE) if field in TIMES else TOLERANCE
+            if found := differs(getattr(old, field), getattr(new, field), slack, inner, limit):
                 return found
         return ""
     if isinstance(old, (list, tuple)) and isinstance(new, (list, tuple)):
         if len(old) != len(new):
             return f"{name} has {len(old)} -> {len(new)} items"
         pairs = enumerate(zip(old, new, strict=True))
-        return next((f for i, (a, b) in pairs if (f := differs(a, b, tolerance, slack, f"{name}[{i}]"))), "")
+        return next((f for i, (a, b) in pairs if (f := differs(a, b, slack, f"{name}[{i}]", tolerance))), "")
     if _number(old) and _number(new):
         same = old == new or math.isclose(old, new, rel_tol=tolerance, abs_tol=tolerance)
     else:

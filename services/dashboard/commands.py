@@ -30,10 +30,6 @@ class Commands:
         self._sent = 0
         self.naming = ""
 
-    def use_transcript(self, transcript: Transcript) -> None:
-        """Note in this transcript what visitors do from now on."""
-        self._transcript = transcript
-
     def words(self, do: str, text: str, t: float) -> None:
         """A button was pressed or a line typed; what is unknown is counted."""
         if do == "stop":

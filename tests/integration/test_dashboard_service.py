@@ -6,7 +6,6 @@ import urllib.request
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from math import pi
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -14,15 +13,12 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.bus import codec
 from common.household import load_household
-from common.recording import Recorder, RecordingError
 from common.robot.model import Hand
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
-from services.dashboard.replay.playback import opened
 from services.dashboard.service import DashboardService
-from services.dashboard.web.events import Click, Words
+from services.dashboard.web.events import Click
 from services.dashboard.web.server import Web
 from services.sim.model import own
 from services.sim.physics import Physics
@@ -178,7 +174,7 @@ def test_clicks_obey_the_check_box(drawn: Page) -> None:
     drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1
-    drawn.service.panels.command_by_clicks(False)
+    drawn.service.panels._clicks.value = False
     drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1
@@ -221,48 +217,3 @@ def test_a_mission_has_a_page(page: Page) -> None:
     assert code == 200
     assert "bring me the &lt;mug&gt;" in text and "<svg" in text
     assert get("m-2")[0] == 404
-
-
-def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_path: Path) -> None:
-    path = tmp_path / "run.mcap"
-    recorder = Recorder(path)
-    recorder.write("sim/model", codec.encode(topics.SIM_MODEL, SIM_MODEL), 0.0, 0.0)
-    for n in range(101):
-        values = (n / 100, 0.0, 0.0, *own().home, 0.085)
-        zeros = [0.0] * len(values)
-        joints = m.JointStates(t=n / 10, name=list(JOINT_NAMES), position=list(values), velocity=zeros, effort=zeros)
-        recorder.write("joint_states", codec.encode(topics.JOINT_STATES, joints), n / 10, n / 10)
-    recorder.close()
-    film = opened(path, DashboardConfig(port=0))
-    try:
-        now = [0.0]
-
-        def drawn() -> bool:
-            now[0] += 0.5
-            film.frame(now[0], 0.0)
-            return bool(film.scene.view.drawing.links)
-
-        eventually(drawn, "the model is drawn")
-        stops = film.deck.bus.tap(topics.ROBOT_STOP)
-        for words in (Words("stop"), Words("say", "bring me the mug"), Words("pause"), Words("seek", "7.3")):
-            film.web.inbox.put(words)
-        film.frame(now[0] + 2, 0.0)
-        film.frame(now[0] + 4, 0.5)
-        base = next(node for name, node in film.scene.view.nodes.items() if name.endswith("/base"))
-        assert base.position[0] == pytest.approx(0.73)
-        assert stops == []
-        film.web.inbox.put(Words("play"))
-        film.frame(now[0] + 6, 0.0)
-        film.frame(now[0] + 8, 1.5)
-        assert base.position[0] == pytest.approx(0.88)
-        film.frame(now[0] + 10, 60.0)
-        assert film.tape.at == 10.0 and not film.playing
-    finally:
-        film.close()
-
-
-def test_a_recording_without_a_robot_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "empty.mcap"
-    Recorder(path).close()
-    with pytest.raises(RecordingError, match="nothing to see"):
-        opened(path, DashboardConfig(port=0))

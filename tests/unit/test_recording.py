@@ -174,7 +174,7 @@ def states(*rows: tuple[float, str]) -> list[tuple[float, m.Message]]:
     ],
 )
 def test_events_are_compared_in_order(old: Any, new: Any, slack: float, said: str) -> None:
-    verdict = compare(topics.NAVIGATION_STATUS, states(*old), states(*new), 1e-9, slack)
+    verdict = compare(topics.NAVIGATION_STATUS, states(*old), states(*new), slack)
     assert verdict.difference.startswith(said) and verdict.same is (not said)
 
 
@@ -183,18 +183,19 @@ def test_a_stream_with_slack_may_skip_but_not_stray() -> None:
         return [(t, m.PoseEstimate(t=t, x=2 * t, y=0.0, theta=0.0)) for t in rows]
 
     old = poses(0.0, 0.1, 0.2, 0.3)
-    assert compare(topics.POSE, old, poses(0.1, 0.3), 1e-6, 0.05).same
-    assert not compare(topics.POSE, old, poses(0.1, 0.3), 1e-6, 0.0).same
+    assert compare(topics.POSE, old, poses(0.1, 0.3), 0.05).same
+    assert not compare(topics.POSE, old, poses(0.1, 0.3), 0.0).same
     new = [*poses(0.1), (0.2, m.PoseEstimate(t=0.2, x=0.9, y=0.0, theta=0.0))]
-    assert "x 0.4 -> 0.9" in compare(topics.POSE, old, new, 1e-6, 0.05).difference
+    assert "x 0.4 -> 0.9" in compare(topics.POSE, old, new, 0.05).difference
 
 
 def test_numbers_differ_beyond_the_tolerance_and_epochs_never() -> None:
     a, b = m.JointStates(t=1, name=["j"], position=[1.0], velocity=[], effort=[]), None
     b = m.JointStates(t=1, name=["j"], position=[1.001], velocity=[], effort=[])
-    assert differs(a, b, 1e-6, 0.0) == "position[0] 1.0 -> 1.001" and not differs(a, b, 0.01, 0.0)
-    assert not differs(m.SimStatus(state="running", epoch="a"), m.SimStatus(state="running", epoch="b"), 0.0, 0.0)
-    assert "has 1 -> 0 items" in differs(a, m.JointStates(t=1, name=[], position=[], velocity=[], effort=[]), 0.0, 0.0)
+    assert differs(a, b, 0.0) == "position[0] 1.0 -> 1.001"
+    assert not differs(a, m.JointStates(t=1, name=["j"], position=[1 + 1e-12], velocity=[], effort=[]), 0.0)
+    assert not differs(m.SimStatus(state="running", epoch="a"), m.SimStatus(state="running", epoch="b"), 0.0)
+    assert "has 1 -> 0 items" in differs(a, m.JointStates(t=1, name=[], position=[], velocity=[], effort=[]), 0.0)
 
 
 # --- replay

@@ -68,10 +68,6 @@ class Panels:
     labels = property(lambda self: bool(self._labels.value))
     clicks = property(lambda self: bool(self._clicks.value))
 
-    def command_by_clicks(self, wanted: bool) -> None:
-        """Set whether clicks in the view command the robot."""
-        self._clicks.value = wanted  # type: ignore[misc]
-
     def wanted(self, camera: str) -> bool:
         """A visitor wants to see this camera's pictures."""
         return bool(self._wanted[camera].value)

@@ -18,7 +18,6 @@ function connect() {
     if (event.data instanceof ArrayBuffer) { play(event.data); return; }
     const { kind, value } = JSON.parse(event.data);
     if (kind === "state") show(value);
-    else if (kind === "tape") showTape(value);
   };
 }
 
@@ -81,7 +80,7 @@ $("name").onclick = () => {
 // keys.js, here and in the view, says when the space bar was pressed.
 window.addEventListener("message", (event) => {
   if (event.source !== window && event.source !== $("view").contentWindow) return;
-  if (event.data === "stop") act(!$("tape").hidden ? (tape.playing ? "pause" : "play") : "stop");
+  if (event.data === "stop") act("stop");
   else if (event.data && event.data.restart && confirm(`Restart ${event.data.restart}? A mission goes on afterwards.`)) {
     act("restart", event.data.restart);
   }
@@ -152,7 +151,6 @@ function play(buffer) {
 // Browsers let a page sound only after the visitor has done something.
 window.addEventListener("pointerdown", () => { speaker = speaker || new AudioContext(); speaker.resume(); }, { once: true });
 
-setUpTape(act);
 setUpDrive(act);
 setUpHand(act);
 connect();

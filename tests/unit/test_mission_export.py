@@ -1,11 +1,10 @@
-"""Looking back: missions told from a recording, their timeline as a picture, a mission cut out, the page on a tape."""
+"""Looking back: missions told from a recording, their timeline as a picture, a mission cut out."""
 
 import itertools
 import re
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 
 from cli.errors import CliError
@@ -14,14 +13,12 @@ from cli.recordings import key_frames
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.bus.memory import MemoryBus
 from common.mission_log import recorded, timeline
 from common.mission_log.states import spans
 from common.recording import Recorder, Recording, Row
 from common.scene import load_scene
 from common.time.lockstep import DT
 from common.topic import Topic
-from services.dashboard.replay.playback import Tape, TapeIo, wanted_keys
 from services.sim.model import own
 from services.sim.physics import Physics
 from tests.support import JOINT_NAMES
@@ -152,57 +149,6 @@ def test_what_cannot_be_exported_is_said(recording: Recording, tmp_path: Path) -
         mission_export.export(recording.path, tmp_path / "x.mp4", "last")
     with pytest.raises(CliError, match="itself"):
         mission_export.export(recording.path, recording.path, "m-1")
-
-
-def tape_of(recording: Recording) -> tuple[Tape, TapeIo]:
-    bus = MemoryBus()
-    io = TapeIo(bus, recorded.missions(recording.rows))
-    return Tape(recording, bus, io), io
-
-
-def test_the_tape_shows_what_was_newest_at_any_time(recording: Recording) -> None:
-    tape, io = tape_of(recording)
-
-    def seen() -> tuple[float, str]:
-        io.begin(None, 1.0)
-        joints, state = io.latest(topics.JOINT_STATES), io.latest(topics.BRAIN_STATE)
-        return (joints.t if joints is not None else -1.0, state.state if state is not None else "")
-
-    tape.seek(15.05)
-    assert seen() == (15.0, "NAVIGATING")
-    tape.play(6.0)
-    assert seen() == (21.0, "ERROR")
-    tape.seek(0.5)
-    assert seen() == (0.5, ""), "nothing is left of what comes later"
-    tape.seek(1e9)
-    assert tape.at == tape.last
-    assert seen()[0] == pytest.approx(29.9)
-    assert io.peer("sim") == "" and io.peer("brain") is None
-
-
-def test_speech_until_then_comes_back_with_a_jump(recording: Recording) -> None:
-    tape, _ = tape_of(recording)
-    assert [row.key for row in tape.seek(15.0)] == [topics.SPEECH_GOAL.key]
-    assert tape.seek(9.0) == []
-
-
-def test_the_tape_answers_for_the_journal(recording: Recording) -> None:
-    _, io = tape_of(recording)
-
-    def asked(request: bytes) -> Any:
-        job = io.ask(topics.BRAIN_MISSIONS, request)
-        while not job.poll(0.0):
-            pass
-        return msgspec.json.decode(job.result() or b"null")
-
-    assert [row["id"] for row in asked(b"")] == ["m-1", "m-2"]
-    assert asked(b'{"id": "m-1"}')["entries"]
-    assert asked(b'{"id": "m-9"}') is None
-    io.shutdown()
-
-
-def test_the_page_reads_what_the_story_needs() -> None:
-    assert wanted_keys() >= recorded.TOLD
 
 
 def test_a_timeline_from_a_recording_has_key_frames(
