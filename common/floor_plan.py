@@ -29,13 +29,6 @@ TALLEST = 0.35
 """How far [m] above a surface the centre of what rests on it is looked for: beyond half of the tallest object."""
 ROUNDING = 1e-9
 """What the edge of a room is off by in arithmetic [m]."""
-BACK = 0.10
-"""How much higher [m] what stands on a piece of furniture is than its seat to be its back, over which nothing is taken.
-Chosen: more than a cushion."""
-BESIDE = 0.3
-"""Room [m] that somebody who stands before furniture has at least: half of a base."""
-SEAT, SEAT_SIDE = (0.20, 0.65), 0.35
-"""Heights [m] of what people sit and lie on, from a floor cushion to a high bed, and the least side [m] of a seat."""
 SIGHTING_ERROR = 0.02
 """How far [m] over the edge of a surface the centre of what rests on it may be seen: the error at arm's length."""
 
@@ -217,37 +210,6 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
     def resting_place(self, position: Vec3) -> Receptacle | None:
         """The receptacle on or in which an object with its centre at `position` [map] was seen to rest."""
         return self.surface_at(*position, margin=SIGHTING_ERROR, above=TALLEST)
-
-    def support_at(self, x: float, y: float) -> Receptacle | None:
-        """What holds a thing at the point (x, y) [map]: a receptacle, else a piece of furniture as one."""
-        if (surface := self.surface_at(x, y)) is not None:
-            return surface
-        under = [f for f in self.standing if f.outline.contains(x, y)]
-        return self._held_by(max(under, key=lambda f: f.top), (x, y)) if under else None
-
-    @property
-    def seats(self) -> list[Receptacle]:
-        """The tops of sofas, beds and chairs, as receptacles: nobody lists them, and things come to lie there."""
-        return [
-            self._held_by(f, f.center[:2])
-            for f in self.standing
-            if SEAT[0] <= f.top <= SEAT[1]
-            and min(f.size[:2]) >= SEAT_SIDE
-            and not self.surface_at(*f.center[:2])
-            and not any(other.top > f.top and other.outline.contains(*f.center[:2]) for other in self.standing)
-        ]
-
-    def _held_by(self, box: Box, at: Vec2) -> Receptacle:
-        """The top of a box; a side is free where nothing higher is between a point on it and the floor before it."""
-        higher = [f.outline for f in self.standing if f.top > box.top + BACK] + [w.footprint for w in self.walls]
-        u, v = box.outline.to_local(*at)
-        length, width = box.size[0] / 2 + BESIDE, box.size[1] / 2 + BESIDE
-        edges = {(1, 0): (length, v), (-1, 0): (-length, v), (0, 1): (u, width), (0, -1): (u, -width)}
-        free = tuple(
-            side for side, edge in edges.items() if not any(o.meets(at, box.outline.to_map(*edge)) for o in higher)
-        )
-        middle = box.center[0], box.center[1], box.top
-        return Receptacle(name=box.name, kind="table", center=middle, size=box.size[:2], yaw=box.yaw, approach=free)
 
     @property
     def standing(self) -> list[Box]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
 from common.floor_plan import FloorPlan, Place, Receptacle
+from common.furniture_tops import seats
 from common.geometry import Array, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
 
@@ -82,11 +83,11 @@ class Viewpoints:
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
         self._camera = camera
-        self._surfaces = [*(r for r in floor_plan.receptacles if r.kind != "bin"), *floor_plan.seats]
+        self._surfaces = [*(r for r in floor_plan.receptacles if r.kind != "bin"), *seats(floor_plan)]
         found = [_points_on(r) for r in self._surfaces]
         self.points: Array = np.concatenate(found or [np.empty((0, 3))])
         self.surface = np.repeat(np.arange(len(found)), [len(points) for points in found])
-        self.listed: Mask = self.surface < len(found) - len(floor_plan.seats)
+        self.listed: Mask = self.surface < len(found) - len(seats(floor_plan))
         self._screens = _screens(floor_plan, camera.z)
         self._across = math.tan(USED * math.atan(math.tan(camera.fovy / 2) * ASPECT))
         self._upright = math.tan(USED * camera.fovy / 2)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from common.floor_plan import Receptacle
+from common.furniture_tops import seats
 from common.geometry import Array
 from common.household import Household
 from common.messages import Sighting
@@ -103,7 +104,7 @@ def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoi
 
 def points_at(place: str, household: Household, viewpoints: Viewpoints) -> Mask:
     """Which of a search's points (p,) are on the surface or seat of that name, or in the room."""
-    surfaces = [*(r for r in household.receptacles if r.kind != "bin"), *household.seats]
+    surfaces = [*(r for r in household.receptacles if r.kind != "bin"), *seats(household)]
     rooms = (household.room_at(*r.center[:2]) for r in surfaces)
     there = [
         r.name == place or (room is not None and room.name == place) for r, room in zip(surfaces, rooms, strict=True)

@@ -7,6 +7,7 @@ import msgspec
 from common import messages as m
 from common.approach import delivers_at_home, poses_for
 from common.floor_plan import Receptacle, Room
+from common.furniture_tops import support_at
 from common.geometry import SIDES, Pose2
 from common.household import Household
 from services.navigation.config import NavigationConfig
@@ -34,7 +35,16 @@ class Goals:
     def __init__(self, household: Household, places: Places, config: NavigationConfig) -> None:
         self._household, self._places, self._config = household, places, config
 
-    def home(self) -> Choices:
+    def told(self, text: str) -> Choices:
+        """Where words that search nothing send the base; raises `Ended` UNKNOWN_GOAL or UNKNOWN_PLACE."""
+        verb, _, place = text.partition(" ")
+        if text == "return_to_start":
+            return self._home()
+        if verb == "goto" and place.strip():
+            return self.place(place.strip())
+        raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
+
+    def _home(self) -> Choices:
         return [(0.0, self._places.home)]
 
     def place(self, name: str) -> Choices:
@@ -47,7 +57,7 @@ class Goals:
         if not isinstance(place, Receptacle):
             return [(0.0, place)]
         if place.name == self._household.delivery and delivers_at_home(self._household):
-            return self.home()
+            return self._home()
         return self._before((place.center[0], place.center[1]), place)
 
     def pose(self, goal: m.NavGoal, objects: list[m.WorldObject]) -> Choices:
@@ -74,7 +84,7 @@ class Goals:
         for o in objects:
             if o.label == ref.label and not o.held and math.dist((x, y), o.position[:2]) < SAME:
                 return self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
-        return self._before((x, y), self._household.support_at(x, y))
+        return self._before((x, y), support_at(self._household, x, y))
 
     def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
         """Before each object that the words can mean; empty when none is known."""

@@ -7,6 +7,7 @@ import msgspec
 
 from common.config import ConfigError
 from common.floor_plan import Receptacle, Room
+from common.furniture_tops import support_at
 from common.geometry import Pose2
 from common.household import Household
 from common.messages import WorldObject
@@ -85,4 +86,4 @@ class Places:
         """What an object stands on: as reported, else what is under it; None for the floor."""
         if o.on == "floor":
             return None
-        return self._household.receptacle(o.on) or self._household.support_at(o.position[0], o.position[1])
+        return self._household.receptacle(o.on) or support_at(self._household, o.position[0], o.position[1])

@@ -1,7 +1,5 @@
 """Navigation: goals in words or poses -> paths on the costmap -> a stream of target poses for the base."""
 
-import math
-
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -12,14 +10,11 @@ from services.navigation.destinations import Destinations
 from services.navigation.ended import Ended
 from services.navigation.goals import Choices, Goal, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
-from services.navigation.motion.contacts import Contacts
+from services.navigation.map_upkeep import MapUpkeep
 from services.navigation.motion.navigator import Navigator
 from services.navigation.motion.progress import PASSING, PASSING_BY
 from services.navigation.orientation import Orientation
 from services.navigation.others.neighbours import Neighbours
-from services.navigation.planning.changes import ChangesFile
-from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.low_things import LowThings
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.reports import Reports
 from services.navigation.search.search import Search
@@ -39,17 +34,11 @@ class NavigationService:
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
         self._destinations = Destinations(config, io)
-        # Who makes the map takes lasting changes into it.
-        lasting_after = math.inf if config.map == "mapping" else config.lasting_after
-        self._map = Costmap(io.household, config.resolution, config.obstacle_memory, lasting_after)
-        self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
-        if self._changes.load(self._map.obstacles.changes):
-            self._map.obstacles.remember(0.0)
+        self._upkeep = MapUpkeep(config, io)
+        self._map, self._contacts = self._upkeep.map, self._upkeep.contacts
         # While a map is made its cells are the error: a door that the robot just fits through is passed.
         spare = 0.0 if config.map == "mapping" else config.clearance
         self._planner = PathPlanner(self._map, config.footprint_radius + spare, config.inflation)
-        self._contacts = Contacts(self._map, config.footprint_radius)
-        self._low = LowThings(self._map)
         self._state = StateEstimator(config, io, self._map)
         self._navigator: Navigator | None = None
         self._search: Search | None = None
@@ -62,22 +51,15 @@ class NavigationService:
         self._reports = Reports(io, self._state)
         self._legs = 0
         self._now = 0.0
-        self._shown = -1
 
     def step(self, now: float) -> None:
         io, self._now = self._io, now
         self._state.step(now)
         if self._state.fresh and not self._state.lost:
-            self._low.see(self._state.unmapped, now)
+            self._upkeep.see(self._state.unmapped, now)
         self._neighbours.hear(self._known_pose, self._busy, now)
         self._state.robots = self._neighbours.circles
-        if int(now) != self._shown:
-            self._shown = int(now)
-            self._changes.save(self._map.obstacles.changes, now)
-            self._contacts.forget(now)
-            self._low.place(self._destinations.objects())
-            if io.has_subscribers(topics.COSTMAP):
-                io.publish(topics.COSTMAP, self._map.picture(now))
+        self._upkeep.step(self._destinations.objects(), now)
         if io.take_all(topics.ROBOT_STOP) and self._busy:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
         self._inbox.receive()
@@ -129,19 +111,15 @@ class NavigationService:
     def _begin(self, text: str, pose: m.NavGoal | None) -> None:
         """Raises `Ended` for an unknown goal or place."""
         verb, _, rest = text.partition(" ")
-        rest = rest.strip()
-        named = pose.object.label if pose is not None and pose.object is not None else ""
-        self._destinations.goal_sent(self._reports.status.goal_id, rest if verb == "find" else named)
+        item = rest.strip() if verb == "find" else ""
+        named = pose.object.label if pose is not None and pose.object is not None else item
+        self._destinations.goal_sent(self._reports.status.goal_id, named)
         if pose is not None:
             self._go(self._destinations.standing_at(pose))
-        elif text == "return_to_start":
-            self._go(self._destinations.goals.home())
-        elif verb == "goto" and rest:
-            self._go(self._destinations.goals.place(rest))
-        elif verb == "find" and rest:
-            self._find(rest)
+        elif item:
+            self._find(item)
         else:
-            raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
+            self._go(self._destinations.goals.told(text))
 
     def _find(self, item: str) -> None:
         choices = self._destinations.before(item)

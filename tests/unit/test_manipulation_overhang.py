@@ -18,10 +18,11 @@ from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.edge_spots import INSET, edge_spots
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.overhang import LEDGE, facing_edge, plan_pull
+from services.manipulation.planning.overhang import LEDGE, plan_pull
 from services.manipulation.planning.plan_place import plan_place, plan_placements
 from services.manipulation.planning.planning_scene import tilt_of
 from services.manipulation.planning.straight_grab import Way, feasible
+from services.manipulation.planning.surface_edge import facing_edge
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

@@ -190,8 +190,8 @@ def test_people_never_become_a_part_of_the_map_but_things_beside_them_do(kind: s
         see(made, float(now), **{kind: [(2.575, 0.075, 0.3)]}, d0=0.5, d180=0.75)  # type: ignore[arg-type]
     assert made.obstacles.lasting_at(np.array([(2.575, 0.075), (1.325, 0.075)])).tolist() == [False, True]
     assert made.clearance(2.575, 0.075) == 0.0, "they are in the way all the same"
-    assert made.distance_but_for_people()[made.cell(2.575, 0.075)] > 0.0
-    assert made.distance_but_for_people()[made.cell(1.325, 0.075)] == 0.0
+    assert made.distance_to_things()[made.cell(2.575, 0.075)] > 0.0
+    assert made.distance_to_things()[made.cell(1.325, 0.075)] == 0.0
 
 
 # --- lines

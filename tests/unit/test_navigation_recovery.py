@@ -185,7 +185,7 @@ def test_what_a_person_leaves_is_forgotten_and_what_stood_there_before_is_not() 
         boxes = [box, body] if tick > 50 else [box]
         people = [(1.5, -0.8, 0.45)] if tick > 60 else []
         made.obstacles.see(here, ANGLES, cast(here, [*flat, *boxes]), 10.0, 0.1 * tick, people)
-    free = made.distance_but_for_people()
+    free = made.distance_to_things()
     assert made.clearance(1.36, -0.8) < 0.1 < free[made.cell(1.36, -0.8)]
     assert free[made.cell(1.36, -1.3)] < 0.1 and made.clearance(1.36, -1.3) < 0.1
     away = (-1.0, 3.0, 0.0)

@@ -8,6 +8,7 @@ import pytest
 from common import messages as m
 from common.approach import EDGE_DISTANCE, poses_for
 from common.floor_plan import Box, Place, Receptacle
+from common.furniture_tops import support_at
 from common.geometry import Rectangle
 from common.household import Household
 from common.robot.grip import Grip, grip_of
@@ -70,19 +71,19 @@ def test_furniture_holds_things_before_every_side_that_no_back_rises_from() -> N
     cushion = Box(name="cushion", center=(1.2, 1.0, 0.46), size=(0.3, 0.3, 0.08))
     rug = Box(name="rug", center=(2.0, 0.0, 0.005), size=(3.0, 1.0, 0.01))
     plan = msgspec.structs.replace(SCENE, furniture=(seat, back, cushion, rug), receptacles=())
-    held = plan.support_at(1.7, 0.9)
+    held = support_at(plan, 1.7, 0.9)
     assert held is not None and (held.name, held.center[2], held.outline) == ("seat", 0.42, seat.outline)
     assert set(held.approach) == {(-1, 0), (0, 1), (0, -1)}
-    on_top = plan.support_at(1.2, 1.0)
+    on_top = support_at(plan, 1.2, 1.0)
     assert on_top is not None and on_top.name == "cushion", "the highest that is under it"
-    assert plan.support_at(2.0, 0.2) is None, "a rug holds nothing up"
+    assert support_at(plan, 2.0, 0.2) is None, "a rug holds nothing up"
     nearest = min(poses_for((2.0, 0.75), held))[1]
     assert nearest[:2] == pytest.approx((2.0, 0.55 - EDGE_DISTANCE)), "from the front, with room before the seat"
 
 
 def test_a_surface_counts_before_the_furniture_under_it() -> None:
     body = Box(name="body", center=(0, 0, 0.5), size=(9, 9, 1))
-    assert msgspec.structs.replace(SCENE, furniture=(body,)).support_at(*ALONG) is SHELF
+    assert support_at(msgspec.structs.replace(SCENE, furniture=(body,)), *ALONG) is SHELF
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from common.approach import ROOM, Point, clearance, delivers_at_home, poses_for
 from common.floor_plan import FloorPlan
+from common.furniture_tops import support_at
 from common.geometry import Pose2, wrap
 
 DIRECTIONS = 24
@@ -27,7 +28,7 @@ def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:
     room = floor_plan.room_at(*point)
     options = [
         (penalty + WAY_COST * math.dist(pose[:2], here[:2]), pose, clearance(floor_plan, pose[0], pose[1]))
-        for penalty, pose in poses_for(point, floor_plan.support_at(*point))
+        for penalty, pose in poses_for(point, support_at(floor_plan, *point))
         if floor_plan.room_at(pose[0], pose[1]) is room
     ]
     free = [(cost, pose) for cost, pose, space in options if space >= ROOM]
@@ -35,7 +36,7 @@ def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:
         return min(free)[1]
     if options:
         return max(options, key=lambda option: option[2])[1]
-    return min(poses_for(point, floor_plan.support_at(*point)))[1]
+    return min(poses_for(point, support_at(floor_plan, *point)))[1]
 
 
 def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:

@@ -18,9 +18,9 @@ from services.manipulation.execution.setting_down import probe, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.planning.edge_spots import Placement, edge_spots
-from services.manipulation.planning.overhang import facing_edge
 from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place, plan_placements
 from services.manipulation.planning.planning_scene import bin_spots, obstacles, spots
+from services.manipulation.planning.surface_edge import facing_edge
 
 Plan = Callable[..., PlacePlan]
 """Plans a placement among the obstacles around, from joints (7,)."""

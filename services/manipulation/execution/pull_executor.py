@@ -16,9 +16,10 @@ from services.manipulation.execution.recovery import go_home
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.over_edge import flat_and_wide
 from services.manipulation.planning.motion_planner import Planner
-from services.manipulation.planning.overhang import LET_GO, Pull, can_pull, facing_edge, plan_pull
+from services.manipulation.planning.overhang import LET_GO, Pull, can_pull, plan_pull
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, target_of
 from services.manipulation.planning.stances import stances
+from services.manipulation.planning.surface_edge import facing_edge
 
 PULLING = 0.25
 """Share of the joint speed with which an object is pulled: some 8 cm/s, at which it stops with the fingers."""

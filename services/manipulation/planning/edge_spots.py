@@ -9,7 +9,7 @@ import numpy as np
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.pads import FINGER_HALF
-from services.manipulation.planning.overhang import Edge
+from services.manipulation.planning.surface_edge import Edge
 
 Placement = tuple[tuple[float, float], float]
 """Where the middle of an object comes to (x, y), and where the hand points then [rad], in the base frame."""

@@ -9,6 +9,7 @@ from msgspec import structs
 
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.floor_plan import Receptacle
+from common.furniture_tops import support_at
 from common.geometry import SIDES, Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
@@ -62,7 +63,7 @@ def stances(household: Household, found: WorldObject, but: Sequence[Pose2], stan
     which there is only room for one base, and which the household does not list for that, may be the one that serves.
     """
     x, y = found.position[:2]
-    surface, room = household.receptacle(found.on) or household.support_at(x, y), household.room_at(x, y)
+    surface, room = household.receptacle(found.on) or support_at(household, x, y), household.room_at(x, y)
     listed = surface.approach if surface is not None else ()
     sides: list[Receptacle | None] = [surface]
     if surface is not None and listed:

@@ -239,12 +239,7 @@ class Navigator:
         self.waiting.clear()
 
     def _go_back(
-        self,
-        retreat: Retreat | PassingPlace,
-        pose: Pose2,
-        points: Array | None,
-        people: Sequence[Obstacle],
-        now: float,
+        self, retreat: Retreat | PassingPlace, pose: Pose2, points: Array | None, people: Sequence[Obstacle], now: float
     ) -> m.BaseTarget:
         """Out of the way, and then another plan."""
         if isinstance(retreat, PassingPlace):

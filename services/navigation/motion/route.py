@@ -80,7 +80,7 @@ class Route:
     def blocked_by(self, pose: Pose2, now: float) -> Blocker:
         """Why a plan found no path to any of the choices: without that there is one."""
         here, goals = (pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices]
-        if self._planner.possible(here, goals, self._map.distance_but_for_people()):
+        if self._planner.possible(here, goals, self._map.distance_to_things()):
             return "people"
         if self._planner.possible(here, goals, self._map.distance_to_things(now)):
             return "newcomers"

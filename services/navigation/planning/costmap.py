@@ -108,12 +108,8 @@ class Costmap(Cells):
             self._distance = self.version, self._distances(seen)
         return self._distance[1]
 
-    def distance_but_for_people(self) -> Array:
-        """The same as if nobody stood anywhere."""
-        return self._distances(self.obstacles.things)
-
-    def distance_to_things(self, now: float) -> Array:
-        """The same without what may be somebody whom nobody has seen walk."""
+    def distance_to_things(self, now: float = math.inf) -> Array:
+        """The same as if nobody stood anywhere; by `now` [s] also without who may not have been seen to walk yet."""
         return self._distances(self.obstacles.settled(now))
 
     def _distances(self, seen: Grid) -> Array:

@@ -1,0 +1,45 @@
+"""What makes the costmap more than the plan and the lidar: lasting changes, low things, and what the base ran into."""
+
+import math
+from collections.abc import Sequence
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.geometry import Array
+from services.navigation.config import NavigationConfig
+from services.navigation.motion.contacts import Contacts
+from services.navigation.planning.changes import ChangesFile
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.low_things import LowThings
+
+
+class MapUpkeep:
+    """Owns the costmap `map` and the `contacts` in it; once a second it is brought up to date, kept and shown."""
+
+    def __init__(self, config: NavigationConfig, io: Io) -> None:
+        self._io = io
+        # Who makes the map takes lasting changes into it.
+        lasting_after = math.inf if config.map == "mapping" else config.lasting_after
+        self.map = Costmap(io.household, config.resolution, config.obstacle_memory, lasting_after)
+        self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
+        if self._changes.load(self.map.obstacles.changes):
+            self.map.obstacles.remember(0.0)
+        self.contacts = Contacts(self.map, config.footprint_radius)
+        self._low = LowThings(self.map)
+        self._second = -1
+
+    def see(self, unmapped: Array, now: float) -> None:
+        """Points (n, 2) [map] of a scan that the map does not explain."""
+        self._low.see(unmapped, now)
+
+    def step(self, objects: Sequence[m.WorldObject], now: float) -> None:
+        """`objects`: what perception has reported last."""
+        if int(now) == self._second:
+            return
+        self._second = int(now)
+        self._changes.save(self.map.obstacles.changes, now)
+        self.contacts.forget(now)
+        self._low.place(objects)
+        if self._io.has_subscribers(topics.COSTMAP):
+            self._io.publish(topics.COSTMAP, self.map.picture(now))
