@@ -84,7 +84,8 @@ class Receptacle(Strict, frozen=True):
 
     `center` is the middle of the usable surface (z = its height, or the inner floor of a bin), `size` its
     usable extent along its own x and y. `approach` lists the directions (unit steps in its own frame) from
-    which the robot has free floor. `furniture` names the boxes that make it up. `depth` is the wall height of a bin.
+    which the robot has free floor; a file that leaves it out has those that are free by its plan. `depth` is the wall
+    height of a bin.
     With `named = false` its name is an identifier, and it is called by its kind and room until a person names it.
     """
 

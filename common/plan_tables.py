@@ -6,8 +6,11 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from common.files.entry_errors import in_words
 from common.floor_plan import FloorPlan, Strict
+from common.free_sides import with_sides
 from common.installation import ROOT, shipped
+from common.plan_faults import measure_fault
 
 SCENES, FLOOR_PLANS = ROOT / "services" / "sim" / "scenes", shipped("config") / "floor_plans"
 S = TypeVar("S", bound=Strict)
@@ -63,18 +66,18 @@ def parse(raw: dict[str, Any], kind: type[S], path: Path) -> S:
     try:
         return msgspec.convert(raw, kind, strict=False)
     except msgspec.ValidationError as error:
-        raise SceneError(f"{path}: {error}") from None
+        raise SceneError(f"{path}: {in_words(error, raw, kind)}") from None
 
 
 P = TypeVar("P", bound=FloorPlan)
 
 
 def checked(plan: P, path: Path) -> P:
-    """The plan itself.
+    """The plan, with the sides that its surfaces are free on where the file leaves them out.
 
     Raises:
         SceneError: it is impossible.
     """
-    if found := plan.fault():
+    if found := plan.fault() or measure_fault(plan):
         raise SceneError(f"{path}: {found}")
-    return plan
+    return with_sides(plan)

@@ -161,10 +161,13 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
                 return f"object {found}"
             if not (0 < spec.mass < math.inf) and not (spec.model and spec.mass == 0):
                 return f"object {spec.name!r} needs a positive size and mass"
-            if spec.on and self.surface(spec.on) is None:
+            surface = self.surface(spec.on)
+            if spec.on and surface is None:
                 return f"object {spec.name!r} is on {spec.on!r}, which is no receptacle or furniture"
             if spec.position is not None and not spec.on:
                 return f"object {spec.name!r} has a position and needs `on`: the surface at that place"
+            if spec.position is not None and surface is not None and not surface.contains(*spec.position):
+                return f"object {spec.name!r} has its position {spec.position} [map] beside {spec.on!r}"
             if spec.on == FLOOR and spec.position is None:
                 return f"object {spec.name!r} is on the floor and needs a position"
         return ""

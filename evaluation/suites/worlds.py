@@ -7,12 +7,11 @@ import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-
 from common.config import config_dir
 from common.floor_plan import Strict
 from common.household import Household, load_household, load_words, mapped
 from common.kinds import kind_of
+from common.plan_tables import parse
 from common.scene import ObjectSpec, Scene, SceneError, load_scene
 from evaluation.case import Case, Expect, Line
 from evaluation.suites.blocks import WORDINGS, random
@@ -48,7 +47,7 @@ class Asked(Strict, frozen=True, kw_only=True):
     name: str = ""
     thing: str = ""
     called: str = ""
-    to: tuple[str, ...] = ()
+    to: str | tuple[str, ...] = ()
     wants: tuple[Want, ...] = ()
     effects: tuple[Effect, ...] = ()
     expect: Expect = "delivered"
@@ -109,11 +108,11 @@ def _read(found: Found) -> tuple[Asked, ...]:
     path = found.cases
     assert path is not None
     try:
-        rows = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), CaseFile, strict=False).case
+        rows = parse(tomllib.loads(path.read_text(encoding="utf-8")), CaseFile, path).case
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise WorldsError(f"{path}: not valid TOML: {error}") from None
-    except msgspec.ValidationError as error:
-        raise WorldsError(f"{path}: {error}") from None
+    except SceneError as error:
+        raise WorldsError(str(error)) from None
     for row in rows:
         if wrong := _fault(row, found.world):
             raise WorldsError(f"{path}: {row.command!r}: {wrong}")
@@ -124,6 +123,8 @@ def _fault(row: Asked, world: Scene) -> str:
     """What of a row the world cannot bring about, in words; "" for nothing."""
     wants = _wants(row, world)
     for want in wants:
+        if "" in want.goals:
+            return "nothing says where it belongs: give `to`, or the world a `delivery`"
         if world.object(want.thing) is None:
             return f"the world has no object {want.thing!r}; it has {', '.join(o.name for o in world.objects)}"
         if unknown := next((g for g in want.goals if world.receptacle(g) is None), ""):
@@ -134,7 +135,7 @@ def _fault(row: Asked, world: Scene) -> str:
 
 
 def _wants(row: Asked, world: Scene) -> tuple[Want, ...]:
-    to = row.to or (world.delivery,)
+    to = (row.to,) if row.to and isinstance(row.to, str) else tuple(row.to) or (world.delivery,)
     return row.wants or ((Want(row.thing, to),) if row.thing and row.expect == "delivered" else ())
 
 

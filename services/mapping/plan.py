@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.approach import EDGE_DISTANCE, FOOTPRINT, LATERAL, ROOM
 from common.floor_plan import BIN_WALL, LEG, LEG_INSET, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
-from common.geometry import SIDES, Array, Rectangle
+from common.free_sides import free_sides
+from common.free_sides import reached as reached_cells
+from common.geometry import Array, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins
 from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
@@ -18,10 +19,6 @@ from services.mapping.rooms import find_rooms
 from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
 from services.mapping.walls import find_walls
 
-INSET, BESIDE = 0.10, 0.10
-"""Distance [m] from the ends of a side within which nothing need be reached, and steps between the spots before it."""
-BACK = (0.02, 0.08)
-"""Steps back [m] from the least distance to an edge at which it may be reached: the cell at the edge is not free."""
 SOLID = 0.35
 """Share of a surface's free sides at which the lidar meets a body below it, from which on it stands on no legs."""
 AT_LEGS = LEG_INSET + LEG + 1.5 * RESOLUTION
@@ -102,35 +99,8 @@ def _rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
 
 
 def _reached(states: NDArray[np.uint8]) -> Cells:
-    """Cells on which the robot's middle may stay, that it gets to from its home at the origin of frame `map`.
-
-    The way there may be as narrow as the robot: it was seen by driving it.
-    """
-    distance = ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2
-    labels, _ = ndimage.label(distance >= FOOTPRINT - RESOLUTION / 2, np.ones((3, 3)))
-    sizes = np.bincount(labels.ravel())
-    sizes[0] = 0
-    found: Cells = (labels == int(np.argmax(sizes))) & (distance >= ROOM)
-    return found
-
-
-def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0) -> tuple[Vec2, ...]:
-    """Sides (unit steps in the outline's frame) before which the robot can stand.
-
-    Where it can do so before none it may reach round a corner, as far aside as approach poses are.
-    """
-    found: list[Vec2] = []
-    for beyond in (0.0, max(LATERAL)):
-        for ax, ay in () if found else SIDES:
-            half = outline.length / 2 if ax else outline.width / 2
-            width = outline.width if ax else outline.length
-            far = max(width / 2 - INSET, 0.0) + beyond
-            aside = np.linspace(-far, far, 2 * math.ceil(far / BESIDE) + 1)
-            offs = [half + rim + EDGE_DISTANCE + back for back in BACK]
-            spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for off in offs for s in aside])
-            if grid.at(spots, reached).any():
-                found.append((ax, ay))
-    return tuple(found)
+    """Cells on which the robot's middle may stay: the way there was seen by driving it."""
+    return reached_cells(ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2, RESOLUTION)
 
 
 def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, ReceptacleKind]:
@@ -174,10 +144,10 @@ def _named(
         )  # fmt: skip
 
     for s in surfaces:
-        if sides := approaches(s.outline, grid, reached):
+        if sides := free_sides(s.outline, lambda spots: grid.at(spots, reached)):
             add(*_kind(s, grid, sides), s.outline, s.height, 0.0, sides)
     for outline, rim in bins:
-        if sides := approaches(outline, grid, reached, BIN_WALL):
+        if sides := free_sides(outline, lambda spots: grid.at(spots, reached), BIN_WALL):
             add("bin", "bin", outline, 0.02, rim, sides)
     return found
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.geometry import SIDES
 from common.kinds import kind_of
 from common.scene import ObjectSpec, Receptacle, Scene, SceneError
 
@@ -57,7 +58,8 @@ def _radius(spec: ObjectSpec) -> float:
 
 def _spot(rng: np.random.Generator, r: Receptacle, spec: ObjectSpec) -> tuple[float, float] | None:
     """A point of the surface close to one of its approachable edges."""
-    ax, ay = r.approach[int(rng.integers(len(r.approach)))]
+    sides = r.approach or SIDES
+    ax, ay = sides[int(rng.integers(len(sides)))]
     half = np.array(r.size) / 2
     radius = _radius(spec)
     along = half[1] if ax else half[0]
@@ -90,7 +92,7 @@ def place_objects(scene: Scene, seed: int) -> list[Placement]:
         choices = surfaces
         if spec.on:
             own = scene.surface(spec.on)
-            choices = [own] if own is not None and own.approach else []
+            choices = [own] if own is not None else []
         if not choices:
             raise SceneError(f"scene {scene.name}: no surface for {spec.name!r}; add one with spawn = true")
         for _ in range(TRIES):

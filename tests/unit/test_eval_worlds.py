@@ -59,6 +59,7 @@ def test_without_cases_something_is_asked_for_in_the_household_words(tmp_path: P
     [
         ('[[case]]\ncommand = "bring it"\nthing = "a pot"\n', "no object 'a pot'; it has a cup"),
         ('[[case]]\ncommand = "bring it"\nthing = "a cup"\nto = ["attic"]\n', "no receptacle 'attic'"),
+        ('[[case]]\ncommand = "bring it"\nthing = "a cup"\nto = "attic"\n', "no receptacle 'attic'"),
         ('[[case]]\ncommand = "bring it"\n', "nothing is wanted"),
         ('[[case]]\ncommand = "go"\nexpect = "shown"\n', "`effects` are missing"),
         ('[[case]]\ncommand = "bring it"\nthnig = "a cup"\n', "unknown field `thnig`"),
@@ -81,6 +82,7 @@ def test_a_broken_case_file_is_named(tmp_path: Path, rows: str, expected: str) -
         (f'{PLAN}objects = [{MUG[:-1]}, on = "attic" }}]', "on 'attic', which is no receptacle or furniture"),
         (f"{PLAN}objects = [{MUG[:-1]}, position = [0, 0] }}]", "needs `on`"),
         (f'{PLAN}objects = [{MUG[:-1]}, on = "floor" }}]', "needs a position"),
+        (f'{PLAN}objects = [{MUG[:-1]}, on = "desk", position = [0, 0] }}]', "beside 'desk'"),
     ],
 )
 def test_a_broken_world_is_named(tmp_path: Path, text: str, expected: str) -> None:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from common.floor_plan import Receptacle, Room, Wall
+from common.free_sides import free_sides
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from services.mapping.plan import _delivery, _filled, _kind, _reached, _rim, _separate, approaches
+from services.mapping.plan import _delivery, _filled, _kind, _reached, _rim, _separate
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -87,10 +88,10 @@ def test_a_side_is_reached_where_any_of_its_length_is(width: float, free: tuple[
     grid = Grid((-3.0, -3.0), (3.0, 3.0))
     outline = Rectangle(0.0, 0.0, width, 0.4)
     reached = np.zeros(grid.shape, bool)
-    assert approaches(outline, grid, reached) == ()
+    assert free_sides(outline, lambda spots: grid.at(spots, reached)) == ()
     x, y = np.meshgrid(np.arange(*free, 0.01), np.arange(-0.62, -0.52, 0.01))
     reached[grid.cells(np.column_stack([x.ravel(), y.ravel()]))] = True
-    assert approaches(outline, grid, reached) == ((0.0, -1.0),)
+    assert free_sides(outline, lambda spots: grid.at(spots, reached)) == ((0.0, -1.0),)
 
 
 def test_what_the_robot_stands_before_nowhere_is_reached_round_a_corner() -> None:
@@ -98,9 +99,9 @@ def test_what_the_robot_stands_before_nowhere_is_reached_round_a_corner() -> Non
     grid = Grid((-3.0, -3.0), (3.0, 3.0))
     outline, reached = Rectangle(0.0, 0.0, 0.3, 0.3), np.zeros((120, 120), bool)
     reached[grid.cells(np.array([(0.27, -0.53)]))] = True
-    assert approaches(outline, grid, reached) == ((0.0, -1.0),)
+    assert free_sides(outline, lambda spots: grid.at(spots, reached)) == ((0.0, -1.0),)
     reached[grid.cells(np.array([(0.02, 0.58)]))] = True
-    assert approaches(outline, grid, reached) == ((0.0, 1.0),)
+    assert free_sides(outline, lambda spots: grid.at(spots, reached)) == ((0.0, 1.0),)
 
 
 def test_a_high_or_a_large_ring_is_no_bin() -> None:

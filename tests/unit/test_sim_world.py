@@ -10,6 +10,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import HALF_WIDTH
+from common.household import load_household
 from common.plan_tables import SCENES
 from common.runtime import StartError
 from common.scene import SceneError, load_scene
@@ -215,8 +216,19 @@ def test_a_snapshot_restores_the_whole_state(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (("[2.9, 1.5]", '"x"'), "scene.toml: Expected"),
-        (('kind = "table"', 'kind = "tabel"'), "tabel"),
+        (("[2.9, 1.5]", '"x"'), "scene.toml: high: Expected"),
+        (
+            ('kind = "table"', 'kind = "tabel"'),
+            "receptacles 'table': kind: Invalid enum value 'tabel'; there are bin, counter, shelf, sink, table, tray",
+        ),
+        (("size = [0.60, 1.60]", "size = [0.60]"), "receptacles 'table': size: Expected `array` of length 2"),
+        (("size = [0.60, 1.60]", "size = [0.60, 0]"), "receptacle 'table' needs a positive size"),
+        (("size = [0.60, 1.60]", "size = [60, 160]"), "lengths are metres"),
+        (("size = [0.60, 1.60]", "size = [0.60, 1.60], yaw = 90"), "angles are radians (90.0 degrees are 1.571)"),
+        (("size = [0.60, 1.60]", "size = [0.60, 1.60], rotation = 90"), "there are name, kind, center, size, yaw"),
+        (("center = [2.30, 0.0", "center = [23.0, 0.0"), "receptacle 'table' is at (23.0, 0.0), outside of low"),
+        (("x = 0.0, y = 0.0", "x = 0.4, y = 0.0"), "home (0.4, 0.0) is 0.12 m from what stands there"),
+        (("x = 0.0, y = 0.0", "x = 30.0, y = 0.0"), "home (30.0, 0.0) is outside of low"),
         (("mass = 0.12", "mass = -1.0"), "'yellow block' needs a positive size and mass"),
         (('name = "green can"', 'name = "red mug"'), "object 'red mug' is defined twice"),
         (('delivery = "delivery tray"', 'delivery = "trey"'), "delivery 'trey' is no receptacle"),
@@ -230,6 +242,19 @@ def test_a_typo_in_a_scene_is_named(tmp_path: Path, change: tuple[str, str], exp
     with pytest.raises(SceneError, match=r"scene\.toml") as error:
         load_scene(str(path))
     assert expected in str(error.value)
+
+
+def test_a_surface_has_the_sides_that_are_free_where_the_file_leaves_them_out(tmp_path: Path) -> None:
+    """As a person does who draws a plan: of a table against a wall the other three; the yard outside does not count."""
+    text = (
+        (SCENES / "minimal.toml").read_text().replace("size = [0.60, 1.60], approach = [[-1, 0]]", "size = [0.6, 1.2]")
+    )
+    text = text.replace("high = [2.9, 1.5]\nhome", "high = [12.9, 9.5]\nhome")
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    free, unsaid = load_scene(str(path)).receptacle("table"), load_household(str(path)).receptacle("table")
+    assert free is not None and free == unsaid and set(free.approach) == {(-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)}
+    assert load_scene("minimal").receptacle("table").approach == ((-1.0, 0.0),)  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("speed", ["fast", "-1", "0", "nan"])
