@@ -23,11 +23,10 @@ from common.scene import ObjectSpec, Scene, body_name
 from services.camera.sensor import NOISE_AT_1_M
 from services.manipulation.config import ManipulationConfig
 from services.perception.shapes.measure import Measurement, measure
+from services.perception.unlisted import thinned
 
 WIDTH, HEIGHT, FOVY = 480, 360, 62.0
 """A picture of the head camera [px, deg], at three quarters of its resolution."""
-POINTS = 200
-"""Surface points of an object that perception reports at most."""
 DENSITY, LIGHTEST, HEAVIEST = 350.0, 0.03, 0.7
 """Mass of what is drawn: by its bounding box [kg/m3], and its limits [kg]. Chosen: a full carton has 1000, an empty
 mug 150; two pads hold 3 kg."""
@@ -136,7 +135,7 @@ class UnknownBench(Bench):
         noise = NOISE_AT_1_M * far**2
         shape: Measurement = measure(points, self.floor, camera, (True, True), half_pixel, noise)
         at = (shape.x, shape.y, self.floor + shape.size[1 if shape.tilt else 2] / 2)
-        few = points[self._rng.choice(len(points), min(POINTS, len(points)), replace=False)] - at
+        few = thinned(points) - at
         placed: Any = self.sim.physics.placements[0]
         kind = self._kinds.get(name, "")
         return m.WorldObject(

@@ -29,6 +29,7 @@ def can(**changes: Any) -> m.WorldObject:
         ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2, "spread": 0.01}, ["the yellow can fell over"]),
         ({"position": (1.04, 0.2, 0.65), "tilt": math.pi / 2, "spread": 0.06}, []),
         ({"position": (1.01, 0.2, 0.65), "tilt": math.pi / 2}, []),
+        ({"position": (1.08, 0.2, 0.66), "tilt": math.pi / 2}, []),  # another look at something flat
         ({"position": (1.2, 0.2, 0.03), "tilt": math.pi / 2, "on": ""}, ["the yellow can fell off the shelf"]),
         ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2, "held": True}, []),
         ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2, "seen_at": 10.0}, []),

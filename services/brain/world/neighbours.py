@@ -17,6 +17,9 @@ SHIFTED = 0.03
 """Least way [m] of the middle of what goes over, more than the error of two sightings: what is only told to lie by
 another look at it has not moved. What is measured badly, as from afar, has to have moved by more than its measures are
 off as well."""
+SUNK = 0.003
+"""How much lower [m] the middle of what fell over is at least: half of what a short mug is higher than wide. Chosen: a
+flat toy that another look measures as lying is as high as before."""
 LOWER = 0.10
 """How much lower [m] something lies that has fallen off its surface. Chosen: a step of furniture."""
 
@@ -52,6 +55,10 @@ def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], han
             continue
         if was.position[2] - o.position[2] > LOWER and o.on != was.on:
             found.append(f"the {o.label} fell off the {was.on}" if was.on else f"the {o.label} fell down")
-        elif lies(o.tilt) and math.dist(o.position, was.position) > SHIFTED + o.spread:
+        elif (
+            lies(o.tilt)
+            and was.position[2] - o.position[2] > SUNK
+            and math.dist(o.position, was.position) > SHIFTED + o.spread
+        ):
             found.append(f"the {o.label} fell over")
     return found
