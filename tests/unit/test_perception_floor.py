@@ -30,14 +30,14 @@ def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = (), ahead: float 
     u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
     rays = np.stack([u, v, np.ones_like(u)], axis=-1) @ turned.T
     depth = np.where(rays[..., 2] < -0.05, -PLACE[2] / np.minimum(rays[..., 2], -0.05), 0.0)
-    top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
-    on_top = np.abs(rays[..., :2] * top[..., None] - np.array([ahead, 0.0])).max(axis=-1) < box / 2
-    depth[on_top] = top[on_top]
     for rug in rugs:
         top = (rug.top - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
         at = rays[..., :2] * top[..., None] + PLACE[:2] - rug.center[:2]
         on_top = (np.abs(at) < np.array(rug.size[:2]) / 2).all(axis=-1)
         depth[on_top] = top[on_top]
+    top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
+    on_top = np.abs(rays[..., :2] * top[..., None] - np.array([ahead, 0.0])).max(axis=-1) < box / 2
+    depth[on_top] = top[on_top]
     taken = camera.expose(np.full((HEIGHT, WIDTH, 3), 120, np.uint8), depth, FOCAL, seed)
     measured = (taken.depth / 1000.0).astype(np.float32)
     return View(taken.rgb, measured, (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), PLACE, DOWN)
@@ -57,17 +57,19 @@ def test_a_block_on_the_floor_is_one_object(seed: int, ahead: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_corner_of_a_rug_of_the_map_is_floor(seed: int) -> None:
-    home = msgspec.structs.replace(SCENE, furniture=(RUG,))
-    assert segments(floor(seed, rugs=(RUG,)), SCENE, 3.5), "unmapped, it is taken for an object"
-    assert segments(floor(seed, rugs=(RUG,)), home, 3.5) == []
+def test_a_rug_that_no_map_has_is_floor(seed: int) -> None:
+    assert segments(floor(seed, rugs=(RUG,)), SCENE, 3.5) == []
 
 
-def test_what_lies_on_a_rug_is_seen() -> None:
-    under = Box(name="rug", center=(PLACE[0] + 1.2, PLACE[1], 0.006), size=(0.8, 0.8, 0.012))
-    home = msgspec.structs.replace(SCENE, furniture=(under,))
-    (found,) = segments(floor(0, 0.06), home, 3.5)
-    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+@pytest.mark.parametrize("thick", [0.006, 0.012, 0.019])
+@pytest.mark.parametrize("seed", range(2))
+def test_what_stands_on_a_rug_is_seen_whether_the_map_has_it_or_not(seed: int, thick: float) -> None:
+    """Its pixels were those of something as wide as furniture, or went on into the rug."""
+    under = Box(name="rug", center=(PLACE[0] + 1.2, PLACE[1], thick / 2), size=(0.8, 0.9, thick))
+    for home in (SCENE, msgspec.structs.replace(SCENE, furniture=(under,))):
+        (found,) = segments(floor(seed, 0.08, (under,)), home, 3.5)
+        assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+        assert found.surface.height == pytest.approx(thick, abs=0.004) or thick < 0.008
 
 
 def test_objects_are_looked_for_on_beds_and_seats_and_not_where_a_back_stands_on_them() -> None:

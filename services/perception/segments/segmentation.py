@@ -5,15 +5,14 @@ surface, inside its edges and not too tall is kept, cut where the depth jumps, a
 spot are joined again.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from common.floor_plan import Box, FloorPlan, Receptacle
+from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
 from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.flat import patches
+from services.perception.segments.floor import SEARCH, layers
 from services.perception.segments.outlined import is_part, on_surface, with_parts
 from services.perception.segments.parts import JUMP, joined, parts
 from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
@@ -60,8 +59,6 @@ DEVIATIONS = 4.0
 bumps, of which one in a thousand is beyond three."""
 ONE_DEVIATION = 68.3
 """Percentile of the distances from a plane that is one standard deviation of normal noise."""
-FLOOR_SAMPLE = 11
-"""Every which pixel of the floor its plane is fitted to."""
 
 
 def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | None = None) -> list[Segment]:
@@ -82,8 +79,9 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
         found += _on(view, surface, over.outside(on_it), near, own, dark)
-    floor = _above_floor(view, usable, near.rugs).outside(near.boxes)
-    return found + _on(view, Surface("", 0.0), floor, near, own, dark)
+    for surface, over in _above_floor(view, usable):
+        found += _on(view, surface, over.outside(near.boxes), near, own, dark)
+    return found
 
 
 def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
@@ -113,24 +111,15 @@ def _stands_on(segment: Segment, r: Receptacle) -> bool:
     return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
 
-def _above_floor(view: View, usable: Mask, rugs: Sequence[Box]) -> Cloud:
-    """The usable pixels that stand up from the floor, or a rug, by more than noise; heights are above it as seen.
-
-    A camera that is tilted by 0.3 degrees more than it is believed to be sees the floor rise by 12 mm within 2.2 m.
-    """
-    near_by = usable & (view.depth < FLOOR_RANGE)
-    cloud = _between(view, near_by, -PLANE_SEARCH, MAX_HEIGHT, view.everywhere).lowered(rugs)
-    few = np.abs(cloud.z[::FLOOR_SAMPLE]) < PLANE_SEARCH
-    if few.sum() >= MIN_PLANE:
-        x, y, z = (axis[::FLOOR_SAMPLE][few].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
-        rows = np.stack([x, y, np.ones_like(x)], axis=1)
-        near = np.ones(len(z), bool)
-        for _ in range(2):
-            plane = np.linalg.lstsq(rows[near], z[near], rcond=None)[0]
-            near = np.abs(z - rows @ plane) < PLANE_SEARCH / 2
-        cloud = Cloud(cloud.pixels, cloud.x, cloud.y, cloud.z - (plane[0] * cloud.x + plane[1] * cloud.y + plane[2]))
-    noise = DEVIATIONS * DEPTH_NOISE * float(view.position[2]) * view.depth.ravel()[cloud.pixels]
-    return cloud.kept(cloud.z > np.maximum(noise, CLEARANCE))
+def _above_floor(view: View, usable: Mask) -> list[tuple[Surface, Cloud]]:
+    """The floor and the rugs on it, and the usable pixels that stand up from each by more than noise."""
+    found = []
+    for height, cloud in layers(
+        _between(view, usable & (view.depth < FLOOR_RANGE), -SEARCH, MAX_HEIGHT, view.everywhere)
+    ):
+        noise = DEVIATIONS * DEPTH_NOISE * float(view.position[2]) * view.depth.ravel()[cloud.pixels]
+        found.append((Surface("", height), cloud.kept(cloud.z > height + np.maximum(noise, CLEARANCE))))
+    return found
 
 
 def _between(view: View, usable: Mask, low: float, high: float, window: Window) -> Cloud:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from common.floor_plan import DRIVEN_OVER, Box, FloorPlan
+from common.floor_plan import Box, FloorPlan
 from common.geometry import Rectangle
 
 WALL_MARGIN = 0.035
@@ -16,9 +16,6 @@ FAR_WALL_MARGIN = 0.075
 """The same beyond the depth `segmentation.FAR`: four standard deviations of its noise at 3.5 m."""
 FLOOR_MARGIN = 0.10
 """Margin [m] around furniture in which nothing on the floor is looked for: its legs and edges are seen there."""
-
-RUG_MARGIN = 0.05
-"""How far [m] around a rug of the floor plan its edge is seen: the error of the pose where the floor ends at 2.2 m."""
 SAME_TOP = 0.05
 """Difference [m] of height up to which a receptacle and a piece of furniture have the same upper side."""
 LOWEST_TOP, NARROWEST = 0.12, 0.15
@@ -43,14 +40,6 @@ class Cloud:
             return self
         pairs = zip(self._axes, other._axes, strict=True)
         return Cloud(np.append(self.pixels, other.pixels), *(np.append(a, b) for a, b in pairs))
-
-    def lowered(self, boxes: Sequence[Box]) -> "Cloud":
-        """The same with heights above the boxes where there is one."""
-        z = self.z.copy()
-        for box in boxes:
-            if len(z) and self._may_meet(outline := box.outline.grown(RUG_MARGIN)):
-                z[inside(self.x, self.y, outline)] -= box.top
-        return Cloud(self.pixels, self.x, self.y, z)
 
     @property
     def _axes(self) -> tuple[NDArray[np.float32], ...]:
@@ -103,7 +92,6 @@ class Nearby:
         taken = [*ends, *floor_plan.footprints]
         self.boxes = [b for box in taken if close(b := box.grown(FLOOR_MARGIN))]
         self.furniture = [f for f in floor_plan.furniture if close(f.outline)]
-        self.rugs = [f for f in self.furniture if f.top <= DRIVEN_OVER]
 
     def tops(self, below: float) -> list[tuple[Box, list[Rectangle]]]:
         """Furniture that ends lower than `below` [m] and is no receptacle, such as a bed, each with what stands on it:
