@@ -29,15 +29,19 @@ from common import config
 from common.household import load_household
 from common.language.normalise import normalise
 from common.messages import PlanStep
+from common.plan_rules import known_world
 from common.sound import RATE, Samples, read_wav
 from evaluation.person.voice import utter
 from evaluation.report.statistics import wilson
 from services.brain.config import BrainConfig
+from services.planner.grammar import grammar
+from services.planner.transcriptions import DOUBTFUL, chosen
+from services.planner.world import believed
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import Recognition
 from services.speech.recognise.wake_text import without_wake
 from services.speech.transcribe import Reader
-from tests.everyday import lists, planned
+from tests.everyday import CONFIG, FLAT, HOME, NOW, lists, planned
 
 Outcome = Literal["same", "asked", "asked wrongly", "not understood", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = ("same", "asked", "asked wrongly", "not understood", "wrong")
@@ -177,12 +181,21 @@ def outcome(said: str, heard: Recognition) -> Outcome:
     """What comes of a sentence that was `said`: its plan at once or after "Did you say ...?", or another one."""
     if heard.verdict not in ("accept", "ask") or not heard.text:
         return "not understood"
-    wanted, found = _steps(said), _steps(heard.text)
-    if heard.verdict == "ask" or heard.confidence < SURE:
+    text = in_doubt(heard)
+    wanted, found = _steps(said), _steps(text or heard.text)
+    if text or heard.verdict == "ask" or heard.confidence < SURE:
         return "asked" if found == wanted else "asked wrongly"
     if found == wanted:
         return "same"
     return "wrong" if any(step.action != "say" for step in found) else "not understood"
+
+
+def in_doubt(heard: Recognition) -> str:
+    """The transcription that the planner wants to have asked about, "" where it has no doubt."""
+    told = known_world(HOME, [thing.label for thing in FLAT], "")
+    world = believed(HOME, told, FLAT, (0.0, 0.0, 0.0), NOW)
+    found = chosen(heard.text, heard.alternatives, lambda text: grammar.plan(text, world, CONFIG), world.names)
+    return found.suggestion if found.detail == DOUBTFUL else ""
 
 
 def _steps(text: str) -> list[PlanStep]:

@@ -82,7 +82,7 @@ def perhaps(text: str, names: Container[str]) -> bool:
 
 def _grade(words: Words, names: Container[str]) -> Understanding:
     """The best that any reading of a clause is understood."""
-    words = words[1:] if words[:1] == ("otherwise",) else words
+    words = words[1:] if words[0] == "otherwise" and len(words) > 1 else words
     found: set[Understanding] = {""}
     for variant in _variants(words):
         for wording, slots in readings(variant, "command", "reply", "name"):

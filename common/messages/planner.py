@@ -6,6 +6,7 @@ import msgspec
 
 from common.messages.base import Message
 from common.messages.brain import MissionOutcome
+from common.messages.speech import Transcription
 
 PlannerBackend = Literal["grammar", "llm"]
 StepAction = Literal[
@@ -81,6 +82,8 @@ class PlanRequest(Message):
     """`done`: steps already carried out for this command, from a sender that asks again after a plan marked `again`.
 
     `mission_id`: what the requests of one mission have in common, "" when the sender has no missions.
+    `alternatives`: what may have been said instead of the command, from a sender that only wants to know which of all
+    these to ask the person about: `suggestion` of the plan, "" where it is the command without a doubt.
     """
 
     id: str
@@ -90,6 +93,7 @@ class PlanRequest(Message):
     done: list["PlanStep"] | None = None
     mission_id: str = ""
     history: History = msgspec.field(default_factory=History)
+    alternatives: list[Transcription] = []
 
 
 class ActionPlan(Message):

@@ -57,13 +57,21 @@ class AudioChunk(Message):
     addressed: bool = False
 
 
+class Transcription(Message):
+    """Words that may have been said; `score` 0..1: how probable they are among all that sound like it."""
+
+    text: str
+    score: float = 0.0
+
+
 class VoiceCommand(Message):
     """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?".
 
     `question`: `text` is no command but a question that the robot puts to the person; the answer is the outcome's
     `reason`. An `id` that was heard before is not heard again. `unless_busy`: taken up at once or not at all, neither
     queued nor in the place of another. `withdraws`: the id of a command that is not to be carried out, whether it is
-    under way, waits, or is still to come; `text` then says nothing.
+    under way, waits, or is still to come; `text` then says nothing. `alternatives`: what else may have been said, the
+    likeliest first.
     """
 
     text: str
@@ -73,3 +81,4 @@ class VoiceCommand(Message):
     question: bool = False
     unless_busy: bool = False
     withdraws: str = ""
+    alternatives: list[Transcription] = []

@@ -219,7 +219,7 @@ class BrainService:
         if (said := self._asides.hear(command)) is not None:
             self._interrupt(f"asked for something else: {said.text}")
             self._asides.speak(f"All right, instead of that: {said.text}.")
-            self.context.voice.command = msgspec.structs.replace(command, text=said.text)
+            self.context.voice.command = msgspec.structs.replace(command, text=said.text, alternatives=[])
 
     def _receive_question(self, command: m.VoiceCommand) -> None:
         """Put a client's question to the person, when nothing else is under way: it answers and stops nothing."""

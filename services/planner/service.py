@@ -12,6 +12,7 @@ from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
 from services.planner.language_model.backend import Backend
 from services.planner.language_model.llm import Call, LlmError, NoAnswer, Reply
+from services.planner.transcriptions import chosen
 from services.planner.world import World, believed
 
 REMEMBERED = 32
@@ -65,6 +66,9 @@ class PlannerService:
         now = self._now
         rejected, world = self._rejections(request), self._world(request, now)
         self.close()
+        if request.alternatives:
+            self._publish(request, self._of_alternatives(request, world))
+            return
         plan = self._by_grammar(request, world, rejected)
         llm = self._backend.llm
         if llm is None or plan.again:
@@ -114,6 +118,14 @@ class PlannerService:
         plan = grammar.plan(request.command, world, self._config, rejected, request.done, request.id)
         plan.source = f"{plan.source} ({why})" if why else plan.source
         return plan
+
+    def _of_alternatives(self, request: m.PlanRequest, world: World) -> m.ActionPlan:
+        """By the grammar alone, as what was heard is asked about before anything is made of it."""
+
+        def plan(text: str) -> m.ActionPlan:
+            return self._by_grammar(msgspec.structs.replace(request, command=text), world, [])
+
+        return chosen(request.command, request.alternatives, plan, world.names)
 
     # --- requests and answers
     def _publish(self, request: m.PlanRequest, plan: m.ActionPlan) -> None:

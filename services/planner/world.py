@@ -55,6 +55,11 @@ class World(msgspec.Struct):
     def held(self) -> BelievedObject | None:
         return next((t for t in self.objects if t.held), None)
 
+    @property
+    def names(self) -> frozenset[str]:
+        """Labels and kinds of things that were seen or that the household has."""
+        return frozenset(name for t in (*self.objects, *self.specs) for name in (t.label, t.kind))
+
     def receptacle_of(self, item: BelievedObject) -> Receptacle | None:
         """What a thing stands on or in."""
         return self.household.receptacle(item.on) if item.on else None

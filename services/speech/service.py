@@ -1,6 +1,7 @@
 """Speech: listens all the time for the wake word, "stop" and "cancel", on request for anything; speaks when asked."""
 
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -182,7 +183,7 @@ class SpeechService:
             self._end_listening(recognition)
         elif found == "command":
             self._queue.close_window(now)
-            self._command(text, recognition.confidence)
+            self._command(text, recognition.confidence, recognition.alternatives)
         elif found == "mistaken":
             self._queue.close_window(now)
         elif found == "awake":
@@ -220,8 +221,9 @@ class SpeechService:
             self._answer(self._goal, word, confidence)
         self._command(word, confidence)
 
-    def _command(self, text: str, confidence: float) -> None:
-        command = m.VoiceCommand(text=text, confidence=confidence, id=self._io.new_id("voice"))
+    def _command(self, text: str, confidence: float, others: Iterable[m.Transcription] = ()) -> None:
+        name = self._io.new_id("voice")
+        command = m.VoiceCommand(text=text, confidence=confidence, id=name, alternatives=list(others))
         self._io.log.info("command", text=text, confidence=confidence)
         self._io.publish(topics.VOICE_COMMAND, command)
 

@@ -180,6 +180,55 @@ def test_confirmation_by_need() -> None:
     assert bench.state.state == "PLANNING"
 
 
+OTHERS = [m.Transcription(text="bring me the red mug", score=0.4)]
+
+
+def heard_alike(suggestion: str, steps: list[m.PlanStep] | None = None) -> Bench:
+    """A sure command with an alternative, nothing to be asked, and the planner's answer to which of them it is."""
+    bench = bench_of(enable_confirmation=False)
+    bench.command("bring me the red mud", confidence=1.0, alternatives=OTHERS)
+    request = bench.next_goal(PLAN, 1)
+    assert (request.command, request.alternatives) == ("bring me the red mud", OTHERS)
+    bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=steps or [], suggestion=suggestion))
+    bench.step()
+    return bench
+
+
+def test_what_may_have_been_said_instead_is_asked_about_and_never_done_unasked() -> None:
+    bench = heard_alike("bring me the red mug")
+    assert bench.texts(SPEECH) == ["say Did you say bring me the red mug?"] and bench.count(PLAN) == 1
+    reply(bench, "yes")
+    request = bench.next_goal(PLAN, 2)
+    assert (request.command, request.alternatives) == ("bring me the red mug", [])
+
+
+def test_what_was_heard_first_is_asked_about_where_the_planner_doubts_it() -> None:
+    bench = heard_alike("bring me the red mud")
+    assert bench.texts(SPEECH) == ["say Did you say bring me the red mud?"]
+
+
+@pytest.mark.parametrize("suggestion", ["", "bring me the apple"])
+def test_what_was_heard_first_stands_where_no_transcription_is_suggested(suggestion: str) -> None:
+    """Nor is the plan that came with the choice carried out: the command is planned for itself."""
+    bench = heard_alike(suggestion, [] if suggestion else FETCH)
+    request = bench.next_goal(PLAN, 2)
+    assert (request.command, request.alternatives) == ("bring me the red mud", [])
+    assert bench.sent(QUERY) == [] and bench.texts(SPEECH) == []
+
+
+def test_without_a_planner_to_choose_what_was_heard_first_is_asked_about() -> None:
+    bench = bench_of()
+    bench.command("bring me the red mud", alternatives=OTHERS)
+    bench.until(lambda: bool(bench.texts(SPEECH)))
+    assert bench.texts(SPEECH) == ["say Did you say bring me the red mud?"]
+
+
+def test_who_vouches_for_the_words_has_no_alternatives() -> None:
+    bench = bench_of()
+    bench.command("bring me the red mud", confirmed=True, alternatives=OTHERS)
+    assert bench.next_goal(PLAN, 1).alternatives == []
+
+
 def test_cancel_as_an_answer_is_no_error() -> None:
     bench = asked()
     reply(bench, "never mind")

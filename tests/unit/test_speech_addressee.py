@@ -3,9 +3,10 @@
 import pytest
 
 from common import config
+from common.messages import Transcription
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
-from services.speech.recognise.free_text import UNLISTED, cost, freely
+from services.speech.recognise.free_text import MOST, UNLISTED, cost, freely, without_itself
 from services.speech.recognise.recogniser import Recognition, Verdict
 from services.speech.recognise.sounding import editex, resounded
 from services.speech.recognise.wake_text import without_wake
@@ -175,6 +176,12 @@ def test_a_word_that_was_misheard_is_asked_about_as_what_it_sounds_like(heard: s
     names = {"kitchen", "red", "mug", "apple", "counter"}
     found = freely(Recognition("", "reject", 0.0, heard, 0.95), names, CONFIG)
     assert (found.text, found.confidence) == (text, UNLISTED if text else 0.0)
+
+
+def test_alternatives_are_few_and_mean_something_else_than_what_was_heard() -> None:
+    same, *others = (Transcription(text=f"bring me {what}", score=0.1) for what in ("an apple please", *"abcdefg"))
+    found = without_itself(Recognition("bring me the apple", "accept", 0.9, alternatives=(same, *others)))
+    assert found.alternatives == tuple(others[:MOST])
 
 
 def test_letters_of_one_group_sound_alike() -> None:

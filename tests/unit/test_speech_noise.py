@@ -11,7 +11,7 @@ from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
 from services.speech.recognise.moonshine import Decoded, EncodedUtterance, Moonshine
 from services.speech.recognise.recogniser import PreparedUtterance, Recogniser, confidence_of, verdict_of
-from services.speech.recognise.scoring import CANDIDATES, Choice, likeliest, prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import CANDIDATES, likeliest, prior_cost, ranked, rescored, time_scaled
 from services.speech.recognise.token_trie import BOS, EOS, AnyTokens
 from tests.support import ROOT
 
@@ -126,7 +126,7 @@ def test_of_transcriptions_that_sound_alike_one_that_makes_sense_is_chosen() -> 
 
     def chosen(*found: Said, cost: float) -> tuple[Said, float]:
         again = [s.log_probability for s in found]
-        return likeliest(list(found), again, lambda text: cost * ("mud" in text))
+        return likeliest(list(found), again, lambda text: cost * ("mud" in text))[:2]
 
     assert chosen(mud, mug, cost=0.0)[0] == mud
     assert chosen(mud, mug, cost=1.0)[0] == mug
@@ -135,13 +135,30 @@ def test_of_transcriptions_that_sound_alike_one_that_makes_sense_is_chosen() -> 
     assert likeliest([mud, mug], [-9.0, -4.0], lambda text: 0.0)[0] == mug, "it must hold for both scorings"
 
 
+def test_alternatives_are_ranked_by_their_share_and_told_apart_by_meaning() -> None:
+    worth = [("the mud", -6.0), ("the mug", -5.0), ("a mug please", -4.0), ("", -1.0), ("the moon", -90.0)]
+    found = ranked(worth)
+    assert [one.text for one in found] == ["a mug please", "the mud"], "neither silence nor what is out of the question"
+    assert found[0].score > 0.7 and sum(one.score for one in found) == pytest.approx(1.0, abs=0.01)
+    assert ranked([]) == ()
+
+
+def test_a_choice_tells_how_likely_all_were() -> None:
+    again = [-9.0, -6.0, -4.0]
+    worth = rescored(FOUND, FREE, lambda text: 0.0, lambda these: again).worth
+    assert [said for said, _ in worth] == [FOUND[0], FOUND[1], FREE]
+    assert [value for _, value in worth] == [
+        (s.log_probability + b) / 2 for (s, _), b in zip(worth, again, strict=True)
+    ]
+
+
 def test_other_speech_is_no_command_because_its_transcription_does_not_hold() -> None:
     stop = Said("stop", -13.0, 2)
     free = Said("Let's talk market letter today", -8.0, 7)
-    assert rescored([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == Choice(stop, -2.5, 1.0)
+    assert rescored([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0])[:3] == (stop, -2.5, 1.0)
     near = Said("stop", -10.0, 2)
-    assert rescored([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == Choice(near, 0.0, 1.0)
-    assert rescored([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == Choice(near, -10.0, 1.0)
+    assert rescored([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0])[:3] == (near, 0.0, 1.0)
+    assert rescored([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0])[:3] == (near, -10.0, 1.0)
 
 
 def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() -> None:

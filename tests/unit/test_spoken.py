@@ -44,7 +44,7 @@ def test_of_things_that_nobody_has_listed_something_is_understood(text: str) -> 
 
 @pytest.mark.parametrize(
     "text",
-    ["", "he said bring me the mug", "who put the mug on the desk", "the mug is red", "hm",
+    ["", "otherwise", "he said bring me the mug", "who put the mug on the desk", "the mug is red", "hm",
      "bring law and order", "pass the exam and you can go to the party", "bring the mug to the piazza",
      "bring me the unspeakably wonderful emerald hummingbird feeder", "get me the red", "fetch me the blue"],
 )  # fmt: skip

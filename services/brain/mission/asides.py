@@ -80,5 +80,5 @@ class Asides:
         if len(queued) >= MAX_QUEUED:
             self.speak(f"I have {len(queued)} more things to do already. Please tell me again later.")
             return
-        queued.append(msgspec.structs.replace(command, text=text))
+        queued.append(msgspec.structs.replace(command, text=text, alternatives=[]))
         self.speak(f"I will do that next: {text}." if len(queued) == 1 else f"I will do that later: {text}.")

@@ -165,7 +165,12 @@ class Context:
         mission = self.mission
         self.voice.reply = None
         self._said_before = self._said
-        mission.heard = Heard(confidence=command.confidence, confirmed=command.confirmed, question=command.question)
+        mission.heard = Heard(
+            confidence=command.confidence,
+            confirmed=command.confirmed,
+            question=command.question,
+            alternatives=[] if command.confirmed else command.alternatives,
+        )
         mission.command, mission.started = command.text.strip(), self.now
         mission.command_id = command.id
         self.suspended = None

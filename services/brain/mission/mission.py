@@ -65,13 +65,15 @@ class Failure(msgspec.Struct, frozen=True):
 class Heard(msgspec.Struct):
     """How sure the command is: `confidence` 0 to 1 of speech, `confirmed` by a person, `repeat`: to be said again.
 
-    `question`: it is no command, but what a client wants to know from the person.
+    `question`: it is no command, but what a client wants to know from the person. `alternatives`: what else may have
+    been said, until the planner has told which of all it is.
     """
 
     confidence: float = 1.0
     confirmed: bool = False
     repeat: bool = False
     question: bool = False
+    alternatives: list[m.Transcription] = []
 
 
 class Task(msgspec.Struct):

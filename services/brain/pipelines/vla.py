@@ -9,7 +9,13 @@ from services.brain.pipelines.shared import report_failure
 from services.brain.steps.ask import AskQuestion, HearConfirmation, HearMeaning, HearPerson, meaning, question
 from services.brain.steps.begin import Ready
 from services.brain.steps.leaf import Say, Settle
-from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan
+from services.brain.steps.plan import (
+    AwaitCommand,
+    ChooseTranscription,
+    CompleteWithEvidence,
+    PlanIsComplete,
+    RequestPlan,
+)
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 LOOKS = 4
@@ -20,7 +26,7 @@ def vla_tree(ctx: Context) -> Behaviour:
     """Each round is one command; ticked for ever."""
     do = Sequence(
         "do",
-        Condition("confirm", confirm(ctx), lambda: needs_confirmation(ctx)),
+        confirm(ctx),
         plan(ctx),
         Condition("look_first", look_first(ctx), lambda: ctx.mission.planning.look_again),
         RunPlan("execute", ctx),
@@ -65,14 +71,16 @@ def needs_confirmation(ctx: Context) -> bool:
 
 
 def confirm(ctx: Context) -> Behaviour:
-    """Ask, hear yes, no or a correction; after no, ask for the command again."""
+    """Choose what was heard, and if need be ask, hear yes, no or a correction; after no, ask for the command again."""
+    choose = Condition("which_heard", ChooseTranscription("choose", ctx), lambda: bool(ctx.mission.heard.alternatives))
     ask = Sequence(
         "ask",
         AskQuestion("question", ctx, lambda: question(ctx)),
         HearConfirmation("hear_reply", ctx),
     )
     rounds = 2 * ctx.config.max_retry_attempts - 1
-    return Retry("until_confirmed", ctx, ask, rounds, again=lambda: not ctx.mission.failed_for_good)
+    confirmed = Retry("until_confirmed", ctx, ask, rounds, again=lambda: not ctx.mission.failed_for_good)
+    return Sequence("confirm", choose, Condition("if_doubtful", confirmed, lambda: needs_confirmation(ctx)))
 
 
 def plan(ctx: Context) -> Behaviour:

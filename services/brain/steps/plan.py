@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
 from py_trees.common import Status
 
 from common import messages as m
@@ -37,9 +38,12 @@ class RequestPlan(SendGoal):
         super().__init__(node_id, ctx, ctx.peers.planner, state="PLANNING", timeout=ctx.config.planning_timeout)
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.PLAN_REQUEST, self.request(goal_id)
+
+    def request(self, goal_id: str) -> m.PlanRequest:
         ctx = self.ctx
         mission = ctx.mission
-        request = m.PlanRequest(
+        return m.PlanRequest(
             id=goal_id,
             command=mission.command,
             world=ctx.known_world(),
@@ -48,7 +52,6 @@ class RequestPlan(SendGoal):
             mission_id=mission.id,
             history=ctx.history(),
         )
-        return topics.PLAN_REQUEST, request
 
     def step(self) -> str:
         return f"plan: {self.ctx.mission.command}"
@@ -77,6 +80,28 @@ class RequestPlan(SendGoal):
         self.feedback_message = reason
         code = "REJECTED" if plan.steps else "NO_PLAN"
         return self.fail_with(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))
+
+
+class ChooseTranscription(RequestPlan):
+    """Asks the planner which of several transcriptions makes most sense; one that it doubts has to be asked about."""
+
+    def request(self, goal_id: str) -> m.PlanRequest:
+        return msgspec.structs.replace(super().request(goal_id), alternatives=self.ctx.mission.heard.alternatives)
+
+    def succeed(self, result: Result) -> Status:
+        mission, plan = self.ctx.mission, result.message
+        assert isinstance(plan, m.ActionPlan)
+        texts = [mission.command, *(one.text for one in mission.heard.alternatives)]
+        mission.heard.alternatives = []
+        if plan.suggestion in texts:
+            mission.command, mission.heard.confidence = plan.suggestion, 0.0
+            self.ctx.note("perhaps heard", plan.suggestion, "heard")
+        return Status.SUCCESS
+
+    def fail_with(self, failure: Failure) -> Status:
+        """Without a planner what was heard first is asked about as ever."""
+        self.ctx.mission.heard.alternatives = []
+        return Status.SUCCESS
 
 
 class PlanIsComplete(Leaf):

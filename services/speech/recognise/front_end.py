@@ -12,7 +12,7 @@ from common.sound import RATE
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
-from services.speech.recognise.free_text import cost, freely
+from services.speech.recognise.free_text import cost, freely, without_itself
 from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
 from services.speech.recognise.wake_text import without_wake
@@ -71,7 +71,7 @@ class FrontEnd:
         return_memory()
         if scope == "interrupt":
             return replace(found, text=without_wake(found.text, self._config.wake))
-        return freely(found, self._names, self._config)
+        return without_itself(freely(found, self._names, self._config))
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for the names of this household, and for these of things as well."""

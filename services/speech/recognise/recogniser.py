@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from common.household import Household
 from common.language.normalise import normalise
 from common.language.wordings import INTERRUPTS
+from common.messages import Transcription
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
-from services.speech.recognise.scoring import likeliest, prior_cost, rescored, time_scaled
+from services.speech.recognise.scoring import likeliest, prior_cost, ranked, rescored, time_scaled
 from services.speech.recognise.wake_text import clauses, without_wake
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Recognition:
     `free` is the transcription without any grammar (where the wake word was verified, without that, however it was
     transcribed), `certainty` 0..1 the geometric mean probability of its tokens, `share` 0..1 how probable it is among
     other transcriptions, 0 where these were not looked for. `mistaken`: what began the utterance was taken for the wake
-    word and is something else.
+    word and is something else. `alternatives`: all that it may have been, the likeliest first.
     """
 
     text: str
@@ -47,6 +48,7 @@ class Recognition:
     certainty: float = 0.0
     mistaken: bool = False
     share: float = 0.0
+    alternatives: tuple[Transcription, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,18 +113,19 @@ class Recogniser:
         mistaken, rest = rest is None, free.text if rest is None else rest
         if not found:
             return Recognition("", "reject", 0.0, rest, certainty, mistaken)
-        command, score, share = rescored(found, free, prior, score_again)
+        command, score, share, worth = rescored(found, free, prior, score_again)
         confidence = round(share * confidence_of(score, config), 3)
         verdict = verdict_of(score, certainty, config)
         if not rest and verdict != "accept":
             return Recognition("", "ask", confidence, rest, certainty)
-        heard = Recognition(command.text, verdict, confidence, rest, certainty, mistaken)
+        texts = [(self._plain(rest if one is free else one.text), value) for one, value in worth]
+        heard = Recognition(command.text, verdict, confidence, rest, certainty, mistaken, alternatives=ranked(texts))
         known = not rest or (verdict == "accept" and normalise(rest) == command.text)
         if scope == "interrupt" or mistaken or known or certainty >= CLEAR:
             return heard
         others = self._model.freely(encoded, prior)
         return self._among_others(
-            heard, others, score_again, lambda text: prior(text) + self._cost(text), scope == "woken"
+            heard, others, score_again, lambda text: prior(text) + self._cost(text), scope == "woken", texts
         )
 
     def _among_others(
@@ -132,17 +135,28 @@ class Recogniser:
         score: Callable[[list["Decoded"]], list[float]],
         cost: Callable[[str], float],
         woken: bool,
+        texts: list[tuple[str, float]],
     ) -> Recognition:
-        """With the likeliest of other transcriptions, too, by what may be said to the robot in that time."""
+        """With the likeliest of other transcriptions, too, by what may be said to the robot in that time.
+
+        `texts`: what else it may have been, with its log-probability.
+        """
         if not others:
             return heard
-        chosen, share = likeliest(others, score(others), cost)
-        spelled = clauses(chosen.text)
-        plain = without_wake(spelled, self._config.wake)
-        if woken and plain == spelled:
+        chosen, share, worth = likeliest(others, score(others), cost)
+        worded = [(self._plain(one.text), value) for one, value in worth if not woken or self._wakes(one)]
+        heard = replace(heard, alternatives=ranked([*texts, *worded]))
+        if woken and not self._wakes(chosen):
             return heard  # in it the wake word reads otherwise: nobody knows where the command begins
         certainty = math.exp(chosen.log_probability / chosen.tokens)
-        return replace(heard, free=plain if woken else chosen.text, certainty=certainty, share=share)
+        return replace(heard, free=self._plain(chosen.text) if woken else chosen.text, certainty=certainty, share=share)
+
+    def _plain(self, text: str) -> str:
+        return without_wake(clauses(text), self._config.wake).strip(" ,")
+
+    def _wakes(self, sentence: "Decoded") -> bool:
+        """Does a transcription begin with the wake word as it is written?"""
+        return without_wake(spelled := clauses(sentence.text), self._config.wake) != spelled
 
     def _after_wake(
         self,

@@ -1,13 +1,14 @@
 """Hypothesis scoring: which of the sentences that the grammar allows was said, and how sure that is. Pure."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.language.normalise import DETERMINERS, normalise
+from common.messages import Transcription
 from services.speech.config import SpeechConfig
 
 Array = NDArray[np.float32]
@@ -44,11 +45,13 @@ S = TypeVar("S", bound=ScoredSentence)
 
 class Choice(NamedTuple, Generic[S]):
     """A sentence, its log-likelihood ratio per token to the free transcription, and its `share` 0..1: how probable it
-    is among those that the grammar allows, with all that mean the same."""
+    is among those that the grammar allows, with all that mean the same. `worth`: the log-probability of each of these,
+    and of the free transcription."""
 
     sentence: S
     ratio: float
     share: float
+    worth: list[tuple[S, float]]
 
 
 def rescored(
@@ -64,38 +67,60 @@ def rescored(
     worth = [s.log_probability - prior(s.text) for s in sentences[:CANDIDATES]]
     if normalise(free.text) == best.text:
         share = _share(best, sentences[:CANDIDATES], worth)
-        return Choice(best, (best.log_probability - free.log_probability) / best.tokens, share)
+        ratio = (best.log_probability - free.log_probability) / best.tokens
+        return Choice(best, ratio, share, list(zip(sentences, worth, strict=False)))
     rivals = [s for s, value in zip(sentences, worth, strict=False) if value >= worth[0] - MAX_DEFICIT]
     *totals, free_total = score_again([*rivals, free])
     again = [total - prior(rival.text) for total, rival in zip(totals, rivals, strict=True)]
     k = int(np.argmax(again))
-    share = _share(rivals[k], rivals, [(a + b) / 2 for a, b in zip(worth, again, strict=False)])
+    both = [
+        (rival, (rival.log_probability - prior(rival.text) + b) / 2) for rival, b in zip(rivals, again, strict=True)
+    ]
+    share = _share(rivals[k], rivals, [value for _, value in both])
+    both.append((free, (free.log_probability + free_total) / 2 - prior(free.text)))
     command = rivals[k]
     first = (command.log_probability - free.log_probability) / command.tokens
     second = (totals[k] - prior(command.text) - free_total) / command.tokens
     # What is far from any command has a free transcription that fits its own variant only, and so none the other.
-    return Choice(command, second if first >= PLAUSIBLE else min(second, first), share)
+    return Choice(command, second if first >= PLAUSIBLE else min(second, first), share, both)
 
 
-def likeliest(transcriptions: list[S], again: list[float], cost: Callable[[str], float]) -> tuple[S, float]:
-    """The likeliest of different transcriptions, with the `cost` of what each says, and its share 0..1 of the
-    probability of all of them, with those that mean the same.
+def likeliest(
+    transcriptions: list[S], again: list[float], cost: Callable[[str], float]
+) -> tuple[S, float, list[tuple[S, float]]]:
+    """The likeliest of different transcriptions, with the `cost` of what each says, its share 0..1 of the probability
+    of all of them, with those that mean the same, and each with its log-probability.
 
     `again` are the log-probabilities in the second scoring.
     """
     worth = [(t.log_probability + a) / 2 - cost(t.text) for t, a in zip(transcriptions, again, strict=True)]
     chosen = transcriptions[int(np.argmax(worth))]
-    return chosen, _share(chosen, transcriptions, worth)
+    return chosen, _share(chosen, transcriptions, worth), list(zip(transcriptions, worth, strict=True))
+
+
+def ranked(worth: Iterable[tuple[str, float]]) -> tuple[Transcription, ...]:
+    """Texts with their log-probabilities as transcriptions with shares of the probability, the likeliest first.
+
+    Of texts that mean the same only the likeliest is among them.
+    """
+    best: dict[tuple[str, ...], tuple[str, float]] = {}
+    for text, value in sorted(worth, key=lambda one: -one[1]):
+        if meaning := meant(text):
+            best.setdefault(meaning, (text, value))
+    odds = [math.exp((value - max(v for _, v in best.values())) / TEMPERATURE) for _, value in best.values()]
+    shares = (round(odd / sum(odds), 3) for odd in odds)
+    return tuple(Transcription(text=text, score=p) for (text, _), p in zip(best.values(), shares, strict=True) if p)
 
 
 def _share(chosen: S, sentences: list[S], worth: list[float]) -> float:
     """Probability of what `chosen` means among the `sentences` with these log-probabilities."""
     odds = np.exp((np.array(worth) - max(worth)) / TEMPERATURE)
-    same = [_meaning(s.text) == _meaning(chosen.text) for s in sentences]
+    same = [meant(s.text) == meant(chosen.text) for s in sentences]
     return float(odds[same].sum() / odds.sum())
 
 
-def _meaning(text: str) -> tuple[str, ...]:
+def meant(text: str) -> tuple[str, ...]:
+    """The words of a transcription that tell it from others."""
     return tuple(word for word in normalise(text).split() if word not in DETERMINERS and word != "please")
 
 
