@@ -152,6 +152,15 @@ def test_a_moved_thing_is_in_its_new_place_only() -> None:
     assert found.position[1] == 0.8
 
 
+@pytest.mark.parametrize(("beyond", "believed"), [(1.1, False), (3.0, True)])
+def test_a_poorer_view_moves_a_thing_only_away_from_where_nothing_stands_any_more(beyond: float, believed: bool) -> None:
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0, distance=0.9)], 0.0)
+    tracker.update(empty_view(far=beyond), [detection("red mug", 1.1, 0.04, distance=2.0)], 5.0)
+    (found,) = tracker.objects()
+    assert (found.position[0] == 1.1) == believed and found.seen_at == 5.0
+
+
 def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None:
     tracker = ObjectTracker(SCENE, 3, 0.6)
     tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)

@@ -63,7 +63,7 @@ class ObjectTracker:
                 track.began = now
                 self._tracks.append(track)
                 seen.add(track.id)
-            see(track, d, now)
+            see(track, d, now, should_show(track, view))
         for track in missing:
             track.misses += 1
             fresh = [t for t in self._tracks if t.began > max(track.began, now - FRESH) and t.id in seen]

@@ -28,7 +28,8 @@ TRUST = 4.0
 PARTIAL = 0.1
 """Weight of a sighting of a part, of that of the whole; times the squared share that was seen."""
 POORER = 0.5
-"""Weight of a sighting, of the best one, from which it may still turn the object."""
+"""Weight of a sighting, of the best one, from which it may still turn the object, and have it elsewhere though its place
+is not seen to be empty."""
 
 
 @dataclass
@@ -83,12 +84,17 @@ class Track:
         return best / max(sum(self.scores.values()), 1e-9) * (1 - math.exp(-3.0 * best))
 
 
-def see(track: Track, detection: Detection, now: float) -> None:
-    """Take in a detection of the track's object at robot time `now` [s]."""
+def see(track: Track, detection: Detection, now: float, left: bool = True) -> None:
+    """Take in a detection of the track's object at robot time `now` [s]; `left`: the view sees through its old place."""
     d = _turned_over(track, detection)
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     weight *= 1.0 if d.whole else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
+    if shift > MOVED and not left and weight < POORER * track.best:
+        # Something still stands where a better view has shown it: this one has measured badly.
+        track.looked_at = track.seen_at = now
+        track.misses = 0
+        return
     key = (d.label, d.kind, d.colour) if d.known else UNLISTED
     fell = abs(d.tilt - track.tilt) > FELL and d.confidence >= LIKELY and (not track.scores or key == track.name)
     if fell:
