@@ -103,7 +103,7 @@ class Examiner:
             self._observer.status(now, status)
         for state in self._io.take_all(topics.BRAIN_STATE):
             self._observer.brain(now, state)
-            self._onlooker.about = state.about
+            self._onlooker.offered = state.offered
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)
             self._when.setdefault(state.state, now)

@@ -30,6 +30,7 @@ from common.scene import Scene
 from common.time.clock import monotonic, sleep
 from evaluation.homes.aged import aged
 from evaluation.homes.suite import homes
+from evaluation.person.dialogue import choice
 
 PATIENCE, WALL = 900.0, 3600.0
 """Robot time and wall time [s] for one mission, whichever is over first."""
@@ -138,10 +139,10 @@ class Day:
         if speech is None or speech.state != "listening" or speech.goal_id == self._answered:
             return
         self._answered, words = speech.goal_id, f"the {thing}"
-        if (about := state.about) is not None:
+        if state.offered:
             objects = self.link.query(topics.SIM_TRUTH)["objects"]
-            shown = min(objects, key=lambda name: math.dist(objects[name]["position"], about))
-            words = "yes" if shown == thing else "no"
+            where = {name: o["position"] for name, o in objects.items()}
+            words = choice(thing, [min(where, key=lambda name: math.dist(where[name], p)) for p in state.offered])
         self.link.send(topics.SPEECH_TEXT, m.TypedText(text=words))
 
     def _command(self) -> tuple[str, str, str]:

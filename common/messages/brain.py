@@ -17,7 +17,7 @@ class BrainState(Message):
     """Where the mission stands; `plan_step`: number from 1 of the plan's step under way, 0 when none is.
 
     `command_id`: the id of the `voice_command` that the mission under way began with.
-    `about` [map]: where the object stands that the person is asked about.
+    `offered` [map]: where the objects stand that the person is asked about, in the order of the question.
     """
 
     state: BrainStateName
@@ -31,7 +31,7 @@ class BrainState(Message):
     last: "MissionOutcome | None" = None
     plan_step: int = 0
     command_id: str = ""
-    about: Vec3 | None = None
+    offered: list[Vec3] = []
 
 
 class MissionOutcome(Message):

@@ -3,7 +3,7 @@
 import math
 import re
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from common import messages as m
@@ -27,7 +27,8 @@ CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
 """Who was not understood says it in other words."""
 _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
 _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
-_IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
+_IDENTITY = re.compile(r"(?:is (?:that|this)|which of them is) the .+\?$", re.IGNORECASE)
+ORDINALS = ("first", "second", "third", "fourth", "fifth")
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
 REACTION = 0.5
 """Time [s] until the simulated user answers."""
@@ -55,7 +56,7 @@ class Dialogue:
         """Somebody speaks, or is about to."""
         return bool(self._due or self._sound or self._voice is not None or self._saying)
 
-    def hear(self, saying: str, now: float, seen: str) -> None:
+    def hear(self, saying: str, now: float, seen: Sequence[str]) -> None:
         """What the robot says, "" for nothing; at the end of a sentence the person, who has `seen` what it shows,
         answers."""
         before, self._saying = self._saying, saying
@@ -125,15 +126,15 @@ class SimulatedUser:
         if thing:
             self._thing = self._words = thing
 
-    def answer(self, sentence: str, about: str = "") -> str:
-        """What to say to a sentence of the robot's; "" for nothing. `about`: the object that it shows while it asks."""
+    def answer(self, sentence: str, shown: Sequence[str] = ()) -> str:
+        """What to say to a sentence of the robot's; "" for nothing. `shown`: the objects that it shows as it asks."""
         if self._manner == "silent" or self.answers >= PATIENCE:
             return ""
-        reply = self._reply(sentence.strip(), about)
+        reply = self._reply(sentence.strip(), shown)
         self.answers += bool(reply)
         return reply
 
-    def _reply(self, sentence: str, about: str) -> str:
+    def _reply(self, sentence: str, shown: Sequence[str]) -> str:
         if heard := _HEARD.match(sentence):
             if self._manner == "agree" or self._same(heard[1]):
                 return "yes"
@@ -143,7 +144,7 @@ class SimulatedUser:
         if _AGAIN.search(sentence):
             return self._command
         if _IDENTITY.search(sentence) and self._thing:
-            return "yes" if self._manner == "agree" or about == self._thing else "no"
+            return "yes" if self._manner == "agree" else choice(self._thing, shown)
         if _WHICH.match(sentence) and self._thing:
             return f"the {self._words}"
         return ""
@@ -171,27 +172,34 @@ class SimulatedUser:
 
 
 # --- what the person sees of the robot: the object that it shows, and how fast it drives
-def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:
+def seen_at(place: Vec3, objects: Mapping[str, Vec3]) -> str:
     """The object that a person sees at the place that the robot shows them; "" for none."""
-    if place is None:
-        return ""
     apart = sorted((math.dist(at, place), name) for name, at in objects.items())
     alone = len(apart) == 1 or (len(apart) > 1 and apart[1][0] > apart[0][0] + NEAREST)
     return apart[0][1] if alone and apart[0][0] < SHOWN else ""
 
 
+def choice(thing: str, shown: Sequence[str]) -> str:
+    """What somebody who wants the thing says to a question about what they are shown, one object or several."""
+    if len(shown) < 2:
+        return "yes" if thing in shown else "no"
+    return f"the {ORDINALS[shown.index(thing)]} one" if thing in shown else "none of them"
+
+
 class Onlooker:
-    """Looks at every sample of the world; `about` is the place [map] that the robot shows, `shown` what is seen there,
-    `speed` [m/s] its base's."""
+    """Looks at every sample of the world; `offered` are the places [map] that the robot shows, `shown` what is seen at
+    each, `speed` [m/s] its base's."""
 
     def __init__(self) -> None:
-        self.about: Vec3 | None = None
-        self.shown, self.speed = "", 0.0
+        self.offered: list[Vec3] = []
+        self.shown: list[str] = []
+        self.speed = 0.0
         self._was = (0.0, (0.0, 0.0))
 
     def see(self, t: float, sample: Sample) -> None:
         """The world at robot time `t` [s]."""
-        self.shown = seen_at(self.about, {name: o.position for name, o in sample.things.items()})
+        places = {name: o.position for name, o in sample.things.items()}
+        self.shown = [seen_at(place, places) for place in self.offered]
         (before, there), here = self._was, sample.base[:2]
         self._was = t, here
         self.speed = math.dist(there, here) / max(t - before, 0.01) if before else 0.0

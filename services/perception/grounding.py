@@ -17,7 +17,7 @@ from common.naming.place_named import FLOOR, take_place
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
-MOST = 6
+MOST = 10
 """Objects of which it is told that they may be meant. Chosen: more than anybody is asked about."""
 Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
 

@@ -61,7 +61,7 @@ def test_a_question_is_answered_once_and_by_what_is_shown() -> None:
         query=lambda topic: {"objects": objects},
         send=lambda topic, said: sent.append(said.text),
     )
-    asked = m.BrainState(state="CONFIRMING", about=(1.02, 2.0, 0.8))
+    asked = m.BrainState(state="CONFIRMING", offered=[(1.02, 2.0, 0.8)])
     day.answer("red box", asked)
     assert sent == [], "the robot is still speaking"
     for question, thing, about in (("q.2", "red box", True), ("q.3", "red can", True), ("q.4", "red can", False)):

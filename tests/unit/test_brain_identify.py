@@ -6,6 +6,7 @@ import pytest
 
 from common import messages as m
 from common import topics
+from services.brain.recoveries.search import VIEWPOINTS
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, QUERY, SPEECH, answer_plan, asked, planned, reply
 
@@ -31,12 +32,12 @@ def test_after_a_yes_it_is_fetched() -> None:
     bench = planned()
     answer(bench, 1, maybe("object-3"))
     bench.until(lambda: bench.texts(SPEECH)[-1] == ASKED)
-    assert bench.state.state == "CONFIRMING" and bench.state.about == GREEN
+    assert bench.state.state == "CONFIRMING" and bench.state.offered == [GREEN]
     reply(bench, "yes")
     query = answer(bench, 2, label="orange mug", id="object-3", position=GREEN)
     assert (query.query, query.meant) == ("red mug", "object-3")
     goal = bench.next_goal(topics.NAV_GOAL, 1)
-    assert goal.object is not None and goal.object.label == "orange mug" and bench.state.about is None
+    assert goal.object is not None and goal.object.label == "orange mug" and not bench.state.offered
 
 
 def test_after_a_no_it_looks_on_for_another() -> None:
@@ -55,12 +56,72 @@ def test_after_a_no_it_looks_on_for_another() -> None:
     bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red mug on the desk. Is that the one you mean?")
 
 
-def test_of_several_it_asks_one_after_the_other() -> None:
+def test_of_several_it_asks_about_the_likeliest_first() -> None:
     bench = planned()
-    answer(bench, 1, maybe("object-3", 0.9, "red mug 2"), maybe("object-4", 0.8, on="shelf", position=RED))
+    answer(bench, 1, maybe("object-3", 0.9, "red mug 2"), maybe("object-4", 0.4, on="shelf", position=RED))
     bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red mug on the desk. Is that the one you mean?")
     reply(bench, "no")
     bench.until(lambda: "on the shelf" in bench.texts(SPEECH)[-1])
+
+
+SEVERAL = (
+    maybe("object-3", 0.5), maybe("object-4", 0.4, "red can", "shelf", RED),
+    maybe("object-5", 0.4, "orange mug 2", position=(1.0, 2.3, 0.8)), maybe("object-6", 0.1, "white box"),
+)  # fmt: skip
+WHICH = (
+    "say I see an orange mug and another orange mug on the desk, and a red can on the shelf. "
+    "Which of them is the red mug you mean, if any?"
+)
+
+
+@pytest.mark.parametrize(("said", "meant"), [("the second one", "object-5"), ("the can", "object-4")])
+def test_several_that_are_about_as_likely_are_asked_about_at_once(said: str, meant: str) -> None:
+    bench = planned()
+    answer(bench, 1, *SEVERAL)
+    bench.until(lambda: bench.texts(SPEECH)[-1] == WHICH)
+    assert bench.state.offered == [SEVERAL[0].position, SEVERAL[2].position, RED]
+    reply(bench, said)
+    assert answer(bench, 2, label="red can", id=meant, position=RED).meant == meant
+
+
+def test_which_of_several_is_asked_again_after_a_bare_yes_and_none_of_them_after_a_no() -> None:
+    bench = planned()
+    answer(bench, 1, *SEVERAL)
+    for count, said in ((1, "yes"), (2, "none of them")):
+        while bench.texts(SPEECH).count(WHICH) < count:
+            bench.step()
+        reply(bench, said)
+    bench.until(lambda: bench.count(topics.NAV_GOAL))
+    bench.send(
+        topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=bench.last(topics.NAV_GOAL).id, status="arrived")
+    )
+    assert answer(bench, 2, *SEVERAL).excluded == ["object-3", "object-5", "object-4"]
+
+
+def looks_until(bench: Bench, question: str) -> int:
+    """How often it looks, and sees what fits badly, until it asks."""
+    poor, looks = maybe("object-3", 0.1), 0
+    while question not in bench.texts(SPEECH):
+        goals, queries = bench.count(topics.NAV_GOAL), bench.count(QUERY)
+        if looks < queries:
+            looks += 1
+            answer(bench, looks, poor)
+        elif goals >= looks:
+            goal = bench.last(topics.NAV_GOAL)
+            bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+        bench.step()
+    return looks
+
+
+@pytest.mark.parametrize(
+    ("item", "most"), [("gizmo", sum(VIEWPOINTS[:2]) + 1), ("gizmo from the desk", 1), ("comb", 1000)]
+)
+def test_what_is_unknown_by_its_name_is_asked_about_before_it_was_looked_for_everywhere(item: str, most: int) -> None:
+    bench, name = asked(f"bring me the {item}", enable_confirmation=False), item.split()[0]
+    steps = [m.PlanStep(action="find", object=name, text=item), m.PlanStep(action="grasp", object=name), *FETCH[2:]]
+    answer_plan(bench, 1, steps)
+    looks = looks_until(bench, f"say I see an orange mug on the desk. Is that the {name} you mean?")
+    assert looks <= most and (looks == 1) == (most == 1) and (looks > sum(VIEWPOINTS[:2])) == (most == 1000)
 
 
 def test_without_an_answer_nothing_is_brought() -> None:
@@ -80,17 +141,7 @@ def test_without_an_answer_nothing_is_brought() -> None:
 def test_what_fits_badly_is_asked_about_after_the_search_only() -> None:
     bench = asked(enable_confirmation=False, max_retry_attempts=1)
     answer_plan(bench, 1, FETCH)
-    poor, looks = maybe("object-3", 0.1), 0
-    while ASKED not in bench.texts(SPEECH):
-        goals, queries = bench.count(topics.NAV_GOAL), bench.count(QUERY)
-        if looks < queries:
-            looks += 1
-            answer(bench, looks, poor)
-        elif goals >= looks:
-            goal = bench.last(topics.NAV_GOAL)
-            bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
-        bench.step()
-    assert looks > 1 and bench.last(topics.NAV_GOAL).object is None
+    assert looks_until(bench, ASKED) > 1 and bench.last(topics.NAV_GOAL).object is None
     reply(bench, "no")
     bench.until(lambda: bench.state.last is not None)
     assert bench.state.last is not None and bench.state.last.code == "NOT_FOUND"
@@ -150,7 +201,7 @@ def looking(kinds: dict[str, float], name: str = "object-3") -> m.WorldObject:
 def test_the_fetch_pipeline_asks_before_it_grabs() -> None:
     bench = before(looking({"can": 0.8, "mug": 0.2}))
     bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red can on the desk. Is that the red mug you mean?")
-    assert bench.state.about == GREEN and not bench.count(topics.MANIPULATION_GOAL)
+    assert bench.state.offered == [GREEN] and not bench.count(topics.MANIPULATION_GOAL)
     reply(bench, "yes")
     grab = bench.manip(1)
     assert grab.object is not None and grab.object.label == "red can"
@@ -208,12 +259,12 @@ def test_what_is_said_to_look_otherwise_is_looked_for_in_those_words(said: str, 
 
 def test_before_everything_was_looked_at_few_are_asked_about_that_half_fit() -> None:
     bench = planned()
-    places = [(float(n), 1.0, 0.8) for n in range(4)]
-    several = [maybe(f"object-{n}", 0.4, position=place) for n, place in enumerate(places)]
-    answer(bench, 1, *several)
-    for count in (1, 2):
-        while bench.texts(SPEECH).count(ASKED) < count:
-            bench.step()
-        reply(bench, "no")
-    bench.until(lambda: bench.count(topics.NAV_GOAL))
+    for count in (1, 2, 3):
+        answer(bench, count, maybe(f"object-{count}", 0.4, position=(float(count), 1.0, 0.8)))
+        if count < 3:
+            bench.until(lambda: bench.texts(SPEECH)[-1] == ASKED)
+            reply(bench, "no")
+        bench.until(lambda: bench.count(topics.NAV_GOAL) == count)
+        goal = bench.last(topics.NAV_GOAL)
+        bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
     assert bench.texts(SPEECH).count(ASKED) == 2

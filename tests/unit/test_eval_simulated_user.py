@@ -58,8 +58,14 @@ def test_a_command_without_an_object_is_never_corrected_with_one() -> None:
 @pytest.mark.parametrize(("about", "answer"), [("red mug", "yes"), ("blue mug", "no"), ("", "no")])
 def test_whether_it_is_the_one_is_answered_by_what_is_seen_there(about: str, answer: str) -> None:
     for question in ("I see a pink can on the desk. Is that the red mug you mean?", "Is that the one you mean?"):
-        assert person().answer(question, about) == answer
-        assert person("agree").answer(question, about) == "yes"
+        assert person().answer(question, [about]) == answer
+        assert person("agree").answer(question, [about]) == "yes"
+
+
+@pytest.mark.parametrize(("shown", "answer"), [(["blue mug", "red mug"], "the second one"), (["", ""], "none of them")])
+def test_which_of_several_it_is_is_answered_by_what_is_seen_at_each(shown: list[str], answer: str) -> None:
+    question = "I see a red mug and a can on the desk. Which of them is the red mug you mean, if any?"
+    assert person().answer(question, shown) == answer
 
 
 def test_what_is_seen_where_the_robot_shows() -> None:
@@ -68,7 +74,6 @@ def test_what_is_seen_where_the_robot_shows() -> None:
     assert (
         seen_at((1.05, 0.0, 0.8), objects) == ""
         and seen_at((1.5, 0.0, 0.8), objects) == ""
-        and seen_at(None, objects) == ""
         and seen_at((1.06, 0.0, 0.8), {"red mug": (1.0, 0.0, 0.8)}) == "red mug"
         and seen_at((1.0, 0.0, 0.8), {}) == ""
     )
@@ -80,5 +85,5 @@ def test_plain_words() -> None:
 
 def test_who_has_other_words_for_a_thing_knows_it_when_it_is_shown() -> None:
     one = SimulatedUser("bring me the soap", "red mug", SCENE, called="pink soap")
-    assert one.answer("I see a red mug on the desk. Is that the soap you mean?", "red mug") == "yes"
+    assert one.answer("I see a red mug on the desk. Is that the soap you mean?", ["red mug"]) == "yes"
     assert one.answer("Which soap?") == "the pink soap"

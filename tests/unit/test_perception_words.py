@@ -153,7 +153,7 @@ def test_a_moved_thing_is_in_its_new_place_only() -> None:
 
 
 @pytest.mark.parametrize(("beyond", "believed"), [(1.1, False), (3.0, True)])
-def test_a_poorer_view_moves_a_thing_only_away_from_where_nothing_stands_any_more(beyond: float, believed: bool) -> None:
+def test_a_poorer_view_moves_a_thing_only_where_its_place_is_empty(beyond: float, believed: bool) -> None:
     tracker = ObjectTracker(SCENE, 3, 0.6)
     tracker.update(empty_view(), [detection("red mug", 1.2, 0.0, distance=0.9)], 0.0)
     tracker.update(empty_view(far=beyond), [detection("red mug", 1.1, 0.04, distance=2.0)], 5.0)

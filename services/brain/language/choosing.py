@@ -17,7 +17,7 @@ _NO_NAME = frozenset({
     "i", "want", "is", "take", "bring", "me", "let", "have", "get", "give", "it", "choose", "would", "like", "you",
     "said", "mentioned", "think",
 })  # fmt: skip
-_CARDINALS = ("one", "two", "three", "four")
+_CARDINALS = ("one", "two", "three", "four", "five")
 _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(?=.*\w)")
 """What was said before the words that are meant: `did i say mug? i meant ...`."""
 SURE, FIRM = 0.71, 0.95
@@ -56,7 +56,7 @@ def _singled_out(
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
     bare = " ".join(simplified(tuple(by_wording(answer)[1].split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
-    for n, ordinal in enumerate(("first", "second", "third", "fourth")):
+    for n, ordinal in enumerate(("first", "second", "third", "fourth", "fifth")):
         if words in (
             {ordinal},
             {"number", _CARDINALS[n]},

@@ -44,7 +44,7 @@ class Display:
             last=self.last,
             plan_step=plan_step if mission.active else 0,
             command_id=mission.command_id if running else "",
-            about=about.position if about is not None and state == "CONFIRMING" else None,
+            offered=[p.position for p in about] if state == "CONFIRMING" else [],
         )
         if now == msgspec.structs.replace(before, t=t):
             return None

@@ -30,9 +30,9 @@ class Search(msgspec.Struct):
     get to, as often as it tried. `stances`: by label, the pose from
     which manipulation says that it reaches an object that it did not reach.
 
-    `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
-    about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not, which
-    stood at `refused` [m, map].
+    `perhaps`: objects that may be meant, as perception had them last, `about` those which the person is being asked
+    about, in `questions` [count] so far; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of
+    those that are not, which stood at `refused` [m, map].
     `unanswered`: nobody has answered such a question. `too_wide`: labels of what manipulation has called so.
     """
 
@@ -46,7 +46,8 @@ class Search(msgspec.Struct):
     near_looks: list[NearLooks] = []
     stances: dict[str, tuple[float, float, float]] = {}
     perhaps: list[m.PossibleObject] = []
-    about: m.PossibleObject | None = None
+    about: list[m.PossibleObject] = []
+    questions: int = 0
     confirmed: dict[str, str] = {}
     rejected: list[str] = []
     refused: list[m.Vec3] = []

@@ -7,16 +7,16 @@ from py_trees.behaviour import Behaviour
 from common.naming.likeness import LEAST, LIKELY
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
-from services.brain.steps.find import LocateObject
-from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, candidate
+from services.brain.steps.find import LocateObject, known_by_name
+from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, candidates
 from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
 
 
 def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = False) -> Behaviour:
-    """Ask about one object after the other, the likeliest first, until the person says that it is the one.
+    """Ask about the likeliest objects, then about the next, until the person says that one is the one that is meant.
 
-    `least` and `near` as of `candidate`.
+    `least` and `near` as of `candidates`.
     """
     look = LocateObject("look_for_the_one_meant", ctx, task.item)
     ask = ask_identity(ctx, lambda: task.item, least, near, look)
@@ -31,7 +31,7 @@ def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
 
 def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:
     """An object is seen that may be the one asked for, and nobody was asked about it."""
-    return not ctx.mission.failed_for_good and candidate(ctx, least, near) is not None
+    return not ctx.mission.failed_for_good and bool(candidates(ctx, least, near))
 
 
 def was_another(ctx: Context) -> bool:
@@ -45,3 +45,12 @@ ask_about_the_near, near_possible = partial(ask_whether, near=True), partial(may
 ask_about_the_rest = partial(ask_whether, least=LEAST)
 """After the search: also what fits the words badly, because nothing fits them better."""
 remains_possible = partial(may_be, least=LEAST)
+
+
+def unknown_by_name(ctx: Context, task: Task, there: bool) -> bool:
+    """An object may be meant by words that say nothing of looks: to look on for it would not tell which it is.
+
+    `there`: only where the person has said where it is.
+    """
+    told = not there or bool(ctx.told_points(task.item).any())
+    return told and not known_by_name(ctx, task.item) and remains_possible(ctx)

@@ -114,9 +114,8 @@ class ReportNotFound(Leaf):
             # The arm is carried above the base, which neither camera shows on the way.
             lost = f"I lost the {self._item} on the way and do not see it."
             return f"{lost} Please look whether it lies on my own base."
-        told, names = f"I could not find the {self._item}.", self.ctx.io.latest(topics.HOUSEHOLD_NAMES)
-        taught = {normalise(one.name) for one in names.names} if names else set()
-        if normalise(self._item) in taught or describes(self._item, self.ctx.io.household):
+        told = f"I could not find the {self._item}."
+        if known_by_name(self.ctx, self._item):
             return told
         return f"{told} I do not know what it looks like: tell me its colour and kind, or show it to me and name it."
 
@@ -172,6 +171,13 @@ class WithinReach(Leaf):
             return Status.SUCCESS
         detail = f"it stands at {height:.2f} m, {indefinite(kind.name)} is taken from {kind.highest:.2f} m at the most"
         return ctx.fail("GRABBING", "OUT_OF_REACH", detail, f"The {self._item} stands too high for me.")
+
+
+def known_by_name(ctx: Context, item: str) -> bool:
+    """The words for an object were taught, or say what it looks like."""
+    names = ctx.io.latest(topics.HOUSEHOLD_NAMES)
+    taught = {normalise(one.name) for one in names.names} if names else set()
+    return normalise(item) in taught or describes(item, ctx.io.household)
 
 
 def label_of(ctx: Context, item: str) -> str:

@@ -1,17 +1,19 @@
-"""Leaves that ask the person whether an object that may be the one asked for is."""
+"""Leaves that ask the person whether an object that may be the one asked for is, or which of several."""
 
 import math
 from collections.abc import Callable
+from itertools import groupby
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from common import messages as m
 from common.household import Household
-from common.language.normalise import indefinite, without_determiners
+from common.language.normalise import enumeration, indefinite, without_determiners
 from common.language.noun_phrase import WHICH, related
 from common.naming.likeness import LEAST, PLAIN, describes, likeness
 from common.naming.names import ANYTHING, unnumbered
+from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
@@ -27,14 +29,17 @@ NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
 MOST_ASKED, AT_FIRST = 4, 2
-"""Objects that a person is asked about in one mission, and before everything was looked at unless the words fit them
+"""Questions that a person is asked in one mission, and before everything was looked at unless the words fit an object
 HALF (chosen: more is a nuisance, and a better one may come)."""
+MOST_NAMED, RIVAL = 5, 0.5
+"""Objects that one question names, and their likeness, of that of the likeliest, from which they are named with it.
+Chosen: more are not kept in mind; of two that are about as likely nobody wants to be asked one by one."""
 HALF = 0.5
 """Likeness of an object of which half of the words are seen. Chosen: no other is likelier."""
 
 
 class ChooseCandidate(Leaf):
-    """Takes up the likeliest object that the person was not asked about; `least` and `near` as of `candidate`."""
+    """Takes up the likeliest objects that the person was not asked about; `least` and `near` as of `candidates`."""
 
     def __init__(self, node_id: str, ctx: Context, least: float, near: bool = False) -> None:
         super().__init__(node_id, ctx)
@@ -42,13 +47,14 @@ class ChooseCandidate(Leaf):
 
     def update(self) -> Status:
         search = self.ctx.mission.search
-        search.about = candidate(self.ctx, self._least, self._near)
-        return Status.SUCCESS if search.about is not None else Status.FAILURE
+        search.about = candidates(self.ctx, self._least, self._near)
+        search.questions += bool(search.about)
+        return Status.SUCCESS if search.about else Status.FAILURE
 
 
 class HearIdentity(HearAnswer):
-    """Whether the object asked about is the one that is meant; SUCCESS once the person has said so, or what it looks
-    like instead."""
+    """Whether the object asked about is the one that is meant, or which of several; SUCCESS once the person has said
+    so, or what it looks like instead."""
 
     def __init__(self, node_id: str, ctx: Context, item: Callable[[], str]) -> None:
         super().__init__(node_id, ctx)
@@ -66,43 +72,57 @@ class HearIdentity(HearAnswer):
 
     def heard(self, kind: Reply, rest: str, text: str) -> Status:
         search = self.ctx.mission.search
-        about, search.about = search.about, None
+        about, search.about = search.about, []
         self.ctx.note(f"reply: {kind}", text, "heard")
         self.feedback_message = kind
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
-        if about is None:
+        if not about:
             return self.refuse("NOT_FOUND", "", self.spoken())
-        if kind == "yes":
-            search.confirmed[self._item] = about.id
+        if one := self._the_one(about, kind, text):
+            search.confirmed[self._item] = one.id
             return Status.SUCCESS
+        if kind == "yes":
+            return self.refuse(ANOTHER, "it was not said which of them", self.spoken())
         # Whatever else is said, it is no yes.
-        search.rejected, search.refused = [*search.rejected, about.id], [*search.refused, about.position]
-        search.perhaps = [p for p in search.perhaps if p.id != about.id]
+        search.rejected = [*search.rejected, *(p.id for p in about)]
+        search.refused = [*search.refused, *(p.position for p in about)]
+        search.perhaps = [p for p in search.perhaps if p not in about]
         if meant := reworded(rest, self.ctx.io.household):
             search.chosen[self._item] = meant
             return Status.SUCCESS
-        return self.refuse(ANOTHER, f"the {about.label} is not the {self._item}", self.spoken())
+        none = " or ".join(f"the {p.label}" for p in about)
+        return self.refuse(ANOTHER, f"{none} is not the {self._item}", self.spoken())
+
+    def _the_one(self, about: list[m.PossibleObject], kind: Reply, text: str) -> m.PossibleObject | None:
+        if len(about) == 1 or kind != "correction":
+            return about[0] if len(about) == 1 and kind == "yes" else None
+        label = chosen(text, [p.label for p in about], self.ctx.objects, self.ctx.io.household)
+        return next((p for p in about if p.label == label), None)
 
     def fail_with(self, failure: Failure) -> Status:
         """Nobody answers: nobody is asked again about what is looked for, and nothing is brought that may be wrong."""
         search = self.ctx.mission.search
-        search.about, search.unanswered = None, True
+        search.about, search.unanswered = [], True
         return super().fail_with(failure)
 
 
-def candidate(ctx: Context, least: float, near: bool = False) -> m.PossibleObject | None:
-    """The likeliest object that may be meant and that the person can still be asked about; None if there is none.
+def candidates(ctx: Context, least: float, near: bool = False) -> list[m.PossibleObject]:
+    """The likeliest object that may be meant and that the person can still be asked about, with others about as likely,
+    surface by surface; [] if there is none.
 
-    `least`: its likeness, at least; `near`: of those only that were looked at from nearer.
+    `least`: their likeness, at least; `near`: of those only that were looked at from nearer.
     """
     search = ctx.mission.search
-    if search.unanswered or len(search.rejected) >= MOST_ASKED:
-        return None
-    if least > LEAST and len(search.rejected) >= AT_FIRST:
+    if search.unanswered or search.questions >= MOST_ASKED:
+        return []
+    if least > LEAST and search.questions >= AT_FIRST:
         least = max(least, HALF)
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
-    return next((p for p in left if not near or search.directions(p.position)), None)
+    left = [p for p in left if not near or search.directions(p.position)]
+    rivals = [p for p in left if p.likeness >= RIVAL * left[0].likeness][:MOST_NAMED]
+    places = [p.on for p in rivals]
+    return sorted(rivals, key=lambda p: places.index(p.on))
 
 
 def _asked_about(ctx: Context, possible: m.PossibleObject) -> bool:
@@ -136,7 +156,7 @@ class StillMeant(Leaf):
 def not_plain(ctx: Context) -> bool:
     """The grasp failed as NOT_PLAIN, and there is an object that the person was not asked about yet."""
     failure = ctx.mission.failure
-    return failure is not None and failure.code == NOT_PLAIN and candidate(ctx, LEAST) is not None
+    return failure is not None and failure.code == NOT_PLAIN and bool(candidates(ctx, LEAST))
 
 
 def rated(ctx: Context, item: str, first: m.WorldObject | None = None) -> list[m.PossibleObject]:
@@ -169,20 +189,23 @@ def reworded(text: str, household: Household) -> str:
 
 
 def whether(ctx: Context, item: str) -> str:
-    """The question about an object that may be the one asked for."""
-    about = ctx.mission.search.about
-    if about is None:
-        return ""
-    label = unnumbered(about.label)
-    where = f" on the {about.on}" if about.on else " on the floor"
-    asked = "one" if label == item else item
-    return f"I see {indefinite(label)}{where}. Is that the {asked} you mean?"
+    """The question about the objects that may be the one asked for."""
+    about, seen = ctx.mission.search.about, []
+    for on, group in groupby(about, key=lambda p: p.on):
+        names = [unnumbered(p.label) for p in group]
+        some = [f"another {n}" if n in names[:k] else indefinite(n) for k, n in enumerate(names)]
+        seen.append(f"{enumeration(some)} on the {on or 'floor'}")
+    asked = "one" if any(unnumbered(p.label) == item for p in about) else item
+    question = (
+        f"Is that the {asked} you mean?" if len(about) == 1 else f"Which of them is the {asked} you mean, if any?"
+    )
+    return f"I see {', and '.join(seen)}. {question}" if about else ""
 
 
 def ask_identity(ctx: Context, item: Callable[[], str], least: float, near: bool = False, *then: Behaviour) -> Sequence:
-    """Ask whether what was found is the `item` that is meant; FAILURE unless the person says yes, else `then`.
+    """Ask whether what was found is the `item` that is meant; FAILURE unless the person says so, else `then`.
 
-    `least` and `near` as of `candidate`.
+    `least` and `near` as of `candidates`.
     """
     return Sequence(
         "ask_whether",

@@ -28,8 +28,8 @@ TRUST = 4.0
 PARTIAL = 0.1
 """Weight of a sighting of a part, of that of the whole; times the squared share that was seen."""
 POORER = 0.5
-"""Weight of a sighting, of the best one, from which it may still turn the object, and have it elsewhere though its place
-is not seen to be empty."""
+"""Weight of a sighting, of the best one, from which it may still turn the object, and have it elsewhere though its
+place is not seen to be empty."""
 
 
 @dataclass
@@ -85,7 +85,7 @@ class Track:
 
 
 def see(track: Track, detection: Detection, now: float, left: bool = True) -> None:
-    """Take in a detection of the track's object at robot time `now` [s]; `left`: the view sees through its old place."""
+    """Take in a detection of the track's object at robot time `now` [s]; `left`: its place is seen to be empty."""
     d = _turned_over(track, detection)
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     weight *= 1.0 if d.whole else PARTIAL * d.share**2
