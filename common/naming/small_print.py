@@ -6,6 +6,9 @@ from common.naming.names import normalise
 
 READABLE = 4
 """Letters of a word from which it is more than a chance of the reader."""
+DIFFERENT = 0.5
+"""Share of its letters that differ from each other, above which it is a word. Chosen: bands and edges are read as rows
+of the same letter, CCCO; COCOA has more."""
 ALIKE = 0.8
 """Share of its letters, as difflib counts, by which a word as read is one of these. Chosen: one in five is wrong."""
 _PRINTED = """
@@ -23,4 +26,5 @@ SMALL_PRINT = frozenset(_PRINTED.split())
 def telling(text: str) -> list[str]:
     """The words of a text that may say what a pack is, normalised."""
     words = [w for w in normalise(text).split() if len(w) >= READABLE and not w.isdigit()]
+    words = [w for w in words if len(set(w)) > DIFFERENT * len(w)]
     return [w for w in words if not difflib.get_close_matches(w, SMALL_PRINT, n=1, cutoff=ALIKE)]

@@ -264,7 +264,6 @@ def test_before_everything_was_looked_at_few_are_asked_about_that_half_fit() -> 
         if count < 3:
             bench.until(lambda: bench.texts(SPEECH)[-1] == ASKED)
             reply(bench, "no")
-        bench.until(lambda: bench.count(topics.NAV_GOAL) == count)
-        goal = bench.last(topics.NAV_GOAL)
+        goal = bench.next_goal(topics.NAV_GOAL, count)
         bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
     assert bench.texts(SPEECH).count(ASKED) == 2
