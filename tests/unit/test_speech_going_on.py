@@ -8,6 +8,7 @@ import pytest
 
 from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
+from services.speech.listen.going_on import SURE
 from services.speech.listen.segmenter import Segment
 from services.speech.listen.utterance_queue import DOUBT, REST, UtteranceQueue
 from services.speech.recognise.recogniser import Recognition
@@ -20,6 +21,8 @@ ANSWERS = {
     (3, 2): Recognition("bring me my wallet from the counter", "accept", 0.5),
     (4,): Recognition("the weather", "accept", 0.5),
     (1, 4): Recognition("bring me the apple the weather", "accept", 0.5),
+    (6,): Recognition("", "reject", 0.1),
+    (1, 6): Recognition("", "reject", 0.1),
     (5,): Recognition("stop", "accept", 0.9),
     (3, 5): Recognition("bring me my wallet stop", "accept", 0.5),
 }
@@ -109,10 +112,21 @@ def test_what_could_stand_alone_waits_for_what_its_speaker_goes_on_with(listener
     assert not listener.queue.busy
 
 
-def test_a_sure_command_is_not_spoilt_by_what_others_say_after_it(listener: Listener) -> None:
+def test_of_a_sure_command_that_is_doubtfully_gone_on_with_no_part_is_done_unasked(listener: Listener) -> None:
     listener.ends(2.0, 1)
     listener.begins(2.5)
     listener.ends(4.0, 4)
+    found = listener.queue.take(4.0 + RECOGNISED)
+    assert found is not None
+    said = found.job.result()
+    assert said.text == "bring me the apple the weather" and said.confidence < SURE
+    assert [one.text for one in said.alternatives] == ["bring me the apple"]
+
+
+def test_a_sure_command_is_not_spoilt_by_what_others_say_after_it(listener: Listener) -> None:
+    listener.ends(2.0, 1)
+    listener.begins(2.5)
+    listener.ends(4.0, 6)
     assert listener.taken(4.0 + RECOGNISED) == "bring me the apple"
 
 

@@ -12,6 +12,7 @@ from common.language.meaning import asks_for
 from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, scope
+from services.speech.listen.going_on import rank, whole
 from services.speech.listen.segmenter import Segment, Segmenter
 from services.speech.recognise.front_end import FrontEnd
 from services.speech.recognise.recogniser import Recognition, Scope
@@ -26,8 +27,6 @@ twice the pause of somebody who looks for a word)."""
 REST = 4.0
 """How long what follows on an utterance may last before that is acted on alone [s] (chosen: more than half a sentence
 takes; a television goes on)."""
-SURE = 0.8
-"""Confidence below which a command is asked about, as the brain does, and so may wait for what follows."""
 DOUBT = 0.7
 """How long after its end an utterance that will be asked about waits for more [s] (chosen: with `end_silence` before
 it, the pause of somebody who looks for a word, whom a question that comes too early would talk over)."""
@@ -52,7 +51,7 @@ class PendingUtterance:
         if self.scope == "interrupt" or not self.ended < began <= self.ended + PATIENCE:
             return False
         found = self.job.result()
-        return _rank(found) > 0 and not asks_for(found.text, "stop", "cancel", "yes", "no")
+        return rank(found) > 0 and not asks_for(found.text, "stop", "cancel", "yes", "no")
 
 
 class UtteranceQueue:
@@ -169,7 +168,7 @@ class UtteranceQueue:
         """Does somebody go on with this utterance, or might he, as it will be asked about?"""
         if self._segmenter.speaking and now - self._began < REST and utterance.goes_on(self._began):
             return True
-        return _rank(utterance.job.result()) < 2 and now < utterance.ended + DOUBT and utterance.goes_on(now)
+        return rank(utterance.job.result()) < 2 and now < utterance.ended + DOUBT and utterance.goes_on(now)
 
     def _update_context(self, now: float, addressed: bool, speaking: bool, listening: bool) -> None:
         """Keep the circumstances of the utterance under way: how it began, and what came since."""
@@ -212,7 +211,7 @@ class UtteranceQueue:
             listen = front_end.result().recognise
             found = listen(np.concatenate([before, samples]), asked, wake)
             if first is not None:
-                return found if _rank(found) >= _rank(first) else first
+                return whole(first, found)
             return found if not len(before) or found.verdict == "accept" else listen(samples, asked, wake)
 
         job = self._io.submit(recognise, seconds=seconds)
@@ -232,10 +231,3 @@ class UtteranceQueue:
                 self._pending.remove(utterance)
                 return utterance.samples[-room:], utterance.job.result()
         return (before[-room:] if self._began <= self._unfinished_until else NOTHING), None
-
-
-def _rank(found: Recognition) -> int:
-    """How well something was understood: 2 for what is done at once, 1 for what is asked about, 0 for no command."""
-    if found.verdict not in ("accept", "ask") or not found.text or found.mistaken:
-        return 0
-    return 2 if found.verdict == "accept" and found.confidence >= SURE else 1

@@ -6,7 +6,7 @@ from dataclasses import replace
 from common.language.contractions import expand
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
-from common.language.mood import forbids
+from common.language.mood import forbids, is_asked
 from common.language.normalise import normalise
 from common.language.spoken import BETWEEN, Understanding, perhaps, turns, understood
 from services.speech.config import SpeechConfig
@@ -23,9 +23,13 @@ one question of nine was right, above it two of five."""
 FAINT = 0.4
 """Certainty of the free transcription below which a sentence of the grammar that it does not confirm is asked about.
 Chosen on five voices in noise: below it two of five sentences that were accepted were wrong, above it none of 80."""
-_OPEN_WORDS = "the a an my your our their its and or to from into onto of with between beside behind under"
-OPEN = frozenset(_OPEN_WORDS.split())
-"""Words after which something must come, other than those that also end a sentence ("turn it on", "give me that")."""
+CLOSED = frozenset({"the", "a", "an", "my", "your", "our", "their", "its", "and", "or"})
+"""Words after which something must come in a question, too."""
+OPEN = CLOSED | {"to", "from", "into", "onto", "of", "with", "between", "beside", "behind", "under"}
+"""Words after which something must come, other than those that also end a sentence ("turn it on", "give me that").
+
+A question may end with others of them: "what is it made of".
+"""
 PLAIN = 0.6
 """Certainty of a transcription from which its words count as heard (chosen: half-way between `FAINT` and what the brain
 takes without a question)."""
@@ -95,7 +99,9 @@ def _plain(text: str, config: SpeechConfig) -> str:
 
 def _breaks_off(free: str, found: Recognition) -> bool:
     """Was the beginning of a sentence heard, more plainly than the whole one that the grammar makes of it?"""
-    return OPEN.issuperset(free.split()[-1:] or [""]) and found.certainty >= max(PLAIN, found.confidence)
+    words = tuple(free.replace(",", "").split())
+    needs_more = CLOSED if words and is_asked(words) else OPEN
+    return needs_more.issuperset(words[-1:] or [""]) and found.certainty >= max(PLAIN, found.confidence)
 
 
 def _assured(found: Recognition) -> float:
