@@ -35,6 +35,7 @@ VOICE_COMMAND = goal(
     text="text",
     latched=False,
 )
+SPEECH_UNCLEAR = goal("speech/unclear", m.VoiceCommand, by="speech", to="brain", text="text", latched=False)
 PLAN_REQUEST = goal("plan_request", m.PlanRequest, by="brain", to="planner")
 ACTION_PLAN = event("action_plan", m.ActionPlan, by="planner ros2", to="brain dashboard")
 PLANNER_STATUS = event("planner/status", m.PlannerStatus, by="planner")

@@ -5,6 +5,8 @@ from typing import Literal
 from common.messages.base import Message
 
 SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
+NOT_UNDERSTOOD = "Sorry, I did not understand that. Please say it again."
+"""What the robot says to somebody of whose words neither speech nor the planner makes anything."""
 
 
 class SpeechGoal(Message):

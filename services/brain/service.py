@@ -175,6 +175,8 @@ class BrainService:
     def _receive_commands(self) -> None:
         """Start, answer or interrupt a mission by what people said."""
         ctx = self.context
+        for unclear in self._io.take_all(topics.SPEECH_UNCLEAR):
+            self._asides.weigh(unclear)
         for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normalise(command.text)
             asked = asks_for(words, "stop", "cancel", "come_back")

@@ -122,7 +122,7 @@ def believed(
     held = _canonical(told.held, household)
     found: list[BelievedObject] = []
     for o in objects:
-        if not o.label:
+        if not o.label.strip():
             continue
         spec = named.get(_canonical(o.label, household))
         in_hand = bool(held) and _canonical(o.label, household) == held and not any(t.held for t in found)
@@ -144,7 +144,7 @@ def believed(
     labels = {t.label for t in found}
     for label in (*told.objects, told.held):
         name = _canonical(label, household)
-        if name and name not in labels:
+        if name.strip() and name not in labels:
             labels.add(name)
             spec = named.get(name, BelievedObject(name, name))
             found.append(msgspec.structs.replace(spec, seen=True, held=name == held))

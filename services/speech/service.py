@@ -1,12 +1,8 @@
 """Speech: listens all the time for the wake word, "stop" and "cancel", on request for anything; speaks when asked."""
 
 from collections import deque
-from collections.abc import Iterable
 from dataclasses import replace
 from importlib.util import find_spec
-from pathlib import Path
-
-import numpy as np
 
 from common import messages as m
 from common import speech_weights, topics
@@ -16,16 +12,17 @@ from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.pattern import PatternError
 from common.runtime import StartError
-from common.sound import RATE, AudioError, Samples, read_wav, resample
+from common.sound import AudioError
+from common.topic import Topic
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import consequence
 from services.speech.listen.utterance_queue import PendingUtterance, UtteranceQueue
+from services.speech.recognise.free_text import as_heard
 from services.speech.recognise.front_end import FrontEnd
 from services.speech.recognise.recogniser import Recognition, grammars
-from services.speech.sound_card import Microphone
-from services.speech.speak.player import CHUNK, TtsPlayer
+from services.speech.sources import SoundSources
+from services.speech.speak.player import TtsPlayer
 
-NOT_UNDERSTOOD = "Sorry, I did not understand that. Please say it again."
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
 
 
@@ -42,14 +39,13 @@ class SpeechService:
         self._household = household = io.household
         try:
             found = grammars(config, household)
-            self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
+            self._sources = SoundSources(config, io)
         except (PatternError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         if speech_weights.find() is None:
             raise StartError(f"speech: {speech_weights.MISSING}")
-        self._microphone = Microphone() if config.microphone else None
         self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, household, found))
         self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
@@ -60,6 +56,7 @@ class SpeechService:
         self._listening = False
         self._now = self._deadline = 0.0
         self._asked_again = False
+        self._unclear = Recognition("", "silence", 0.0)
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
         self._status = m.SpeechStatus(state="idle")
         io.publish(topics.SPEECH_STATUS, self._status)
@@ -72,7 +69,7 @@ class SpeechService:
         for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
-        self._queue.push(self._audio(), now, bool(self._player.saying), self._listening, key)
+        self._queue.push(self._sources.take(self._listening), now, bool(self._player.saying), self._listening, key)
         while utterance := self._queue.take(now):
             self._act(utterance, now)
         if self._queue.abandoned(now):
@@ -106,7 +103,7 @@ class SpeechService:
             self._set("speaking", text.strip())
         elif goal.goal.strip() == "listen":
             self._player.stop()
-            self._goal, self._listening = goal, True
+            self._goal, self._listening, self._asked_again = goal, True, False
             self._deadline = self._now + self._config.listen_timeout
             self._set("listening")
             self._io.log.info("listening", id=goal.id)
@@ -145,27 +142,6 @@ class SpeechService:
             self._set(state, detail)
 
     # --- hearing
-    def _audio(self) -> list[tuple[Samples, bool]]:
-        """What arrived since the last step, at 16 kHz, and whether it is meant for the robot."""
-        found: list[tuple[Samples, bool]] = []
-        for chunk in self._io.take_all(topics.AUDIO_PCM):
-            if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
-                self._io.count_drop(topics.AUDIO_PCM.key, "not 16 bit samples at 4 to 192 kHz")
-                continue
-            samples = np.frombuffer(chunk.data, "<i2").astype(np.int16)
-            samples = samples if chunk.rate == RATE else resample(samples.astype(np.float32), chunk.rate)
-            found.append((samples, chunk.addressed))
-        if self._microphone:
-            room = self._microphone.take()
-            if not found:  # two sources mixed would be understood by nobody
-                found += [(samples, False) for samples in room]
-        if self._recording is not None and self._listening:
-            found.append((self._recording[:CHUNK], False))
-            self._recording = self._recording[CHUNK:] if len(self._recording) > CHUNK else None
-            if self._recording is None:
-                found.append((np.zeros(RATE, np.int16), False))
-        return found
-
     def _act(self, utterance: PendingUtterance, now: float) -> None:
         """Do what follows from an utterance that is through recognition."""
         recognition, context = utterance.job.result(), utterance.context
@@ -183,7 +159,7 @@ class SpeechService:
             self._end_listening(recognition)
         elif found == "command":
             self._queue.close_window(now)
-            self._command(text, recognition.confidence, recognition.alternatives)
+            self._publish(topics.VOICE_COMMAND, recognition)
         elif found == "mistaken":
             self._queue.close_window(now)
         elif found == "awake":
@@ -192,14 +168,23 @@ class SpeechService:
             self._queue.open_window(now)
             self._set("listening", f"understood {free!r}", _FAILURES[verdict])
             self._queue.keep(utterance, now)
+            self._unclear = recognition
         if found in ("awake", "command"):
             self._asked_again = False
 
     def _ask_again(self) -> None:
-        """Say that an utterance was not understood: once, so that no television is talked to for ever."""
-        if not self._asked_again:
-            self._asked_again = True
-            self._player.say(NOT_UNDERSTOOD)
+        """Say that an utterance was not understood, or have the brain weigh the words that were heard plainly.
+
+        Once, so that no television is talked to for ever.
+        """
+        if self._asked_again:
+            return
+        self._asked_again = True
+        heard = as_heard(self._unclear, self._config)
+        if heard is not None and self._io.has_subscribers(topics.SPEECH_UNCLEAR):
+            self._publish(topics.SPEECH_UNCLEAR, heard)
+        else:
+            self._player.say(m.NOT_UNDERSTOOD)
 
     def _end_listening(self, recognition: Recognition) -> None:
         self._listening = False
@@ -219,13 +204,13 @@ class SpeechService:
         if self._listening:
             self._listening = False
             self._answer(self._goal, word, confidence)
-        self._command(word, confidence)
+        self._publish(topics.VOICE_COMMAND, Recognition(word, "accept", confidence))
 
-    def _command(self, text: str, confidence: float, others: Iterable[m.Transcription] = ()) -> None:
+    def _publish(self, topic: Topic[m.VoiceCommand], heard: Recognition) -> None:
+        text, confidence, others = heard.text, heard.confidence, list(heard.alternatives)
+        self._io.log.info("command", text=text, confidence=confidence, on=topic.key)
         name = self._io.new_id("voice")
-        command = m.VoiceCommand(text=text, confidence=confidence, id=name, alternatives=list(others))
-        self._io.log.info("command", text=text, confidence=confidence)
-        self._io.publish(topics.VOICE_COMMAND, command)
+        self._io.publish(topic, m.VoiceCommand(text=text, confidence=confidence, id=name, alternatives=others))
 
     # --- listening on request
     def _type(self, text: str, now: float) -> None:
@@ -249,5 +234,4 @@ class SpeechService:
             self._answer(self._goal, "ERROR", 0.0, "TIMEOUT", silent)
 
     def close(self) -> None:
-        if self._microphone:
-            self._microphone.close()
+        self._sources.close()

@@ -1,9 +1,11 @@
 """What people say to a robot at work, and what it asks before it acts on a guess; planner and peers by hand."""
 
+import pytest
+
 from common import messages as m
 from common import topics
 from tests.unit.brain_bench import Bench
-from tests.unit.test_brain_vla import FETCH, PLAN, SPEECH, answer_plan, approach, asked, planned, reply, see
+from tests.unit.test_brain_vla import FETCH, PLAN, SPEECH, answer_plan, approach, asked, bench_of, planned, reply, see
 
 SAYS = m.PlanStep(action="say", text="I am busy.")
 
@@ -127,6 +129,47 @@ def test_nobody_answers_a_guess() -> None:
     bench.until(lambda: bench.state.last is not None)
     assert len(bench.sent(PLAN)) == 1
     assert bench.outcome == "failed"
+
+
+def unclear(bench: Bench, count: int, steps: list[m.PlanStep], suggestion: str = "") -> None:
+    """Words that speech took for no command, and what the planner makes of them."""
+    others = [m.Transcription(text="i am angry", score=0.2)]
+    bench.send(topics.SPEECH_UNCLEAR, m.VoiceCommand(text="i am hungry", confidence=0.0, alternatives=others))
+    request = bench.next_goal(PLAN, count)
+    assert (request.command, request.alternatives) == ("i am hungry", others)
+    bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=steps, suggestion=suggestion))
+    bench.step(0.5)
+
+
+@pytest.mark.parametrize("suggestion", ["", "i am angry"])
+def test_what_speech_takes_for_no_command_is_asked_about_where_there_is_a_plan(suggestion: str) -> None:
+    bench = bench_of(enable_confirmation=False)
+    unclear(bench, 1, [] if suggestion else FETCH, suggestion)
+    text = suggestion or "i am hungry"
+    assert bench.texts(SPEECH) == [f"say Did you say {text}?"] and bench.count(PLAN) == 1
+    reply(bench, "yes")
+    assert bench.next_goal(PLAN, 2).command == text
+
+
+@pytest.mark.parametrize("suggestion", ["", "bring me the apple"])
+def test_what_has_no_plan_either_was_not_understood(suggestion: str) -> None:
+    bench = bench_of()
+    unclear(bench, 1, [], suggestion)
+    assert bench.texts(SPEECH) == [f"say {m.NOT_UNDERSTOOD}"]
+    assert bench.states()[-1] == "WAITING" and bench.outcome == ""
+
+
+def test_at_work_nobody_weighs_what_is_no_command() -> None:
+    bench = planned()
+    bench.send(topics.SPEECH_UNCLEAR, m.VoiceCommand(text="i am hungry", confidence=0.0))
+    bench.step()
+    assert bench.texts(SPEECH)[-1] == f"say {m.NOT_UNDERSTOOD}" and bench.count(PLAN) == 1
+
+
+def test_a_planner_that_does_not_answer_is_not_waited_for_for_ever() -> None:
+    bench = bench_of()
+    bench.send(topics.SPEECH_UNCLEAR, m.VoiceCommand(text="i am hungry", confidence=0.0))
+    bench.until(lambda: bench.texts(SPEECH) == [f"say {m.NOT_UNDERSTOOD}"])
 
 
 def test_it_remembers_where_a_thing_stood() -> None:

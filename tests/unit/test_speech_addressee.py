@@ -6,7 +6,7 @@ from common import config
 from common.messages import Transcription
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
-from services.speech.recognise.free_text import MOST, UNLISTED, cost, freely, without_itself
+from services.speech.recognise.free_text import MOST, UNLISTED, as_heard, cost, freely, without_itself
 from services.speech.recognise.recogniser import Recognition, Verdict
 from services.speech.recognise.sounding import editex, resounded
 from services.speech.recognise.wake_text import without_wake
@@ -185,6 +185,14 @@ def test_alternatives_are_few_and_mean_something_else_than_what_was_heard() -> N
     same, *others = (Transcription(text=f"bring me {what}", score=0.1) for what in ("an apple please", *"abcdefg"))
     found = without_itself(Recognition("bring me the apple", "accept", 0.9, alternatives=(same, *others)))
     assert found.alternatives == tuple(others[:MOST])
+
+
+def test_what_was_no_command_is_handed_on_in_its_own_words_if_it_was_heard_plainly() -> None:
+    others = tuple(Transcription(text=text, score=0.1) for text in ("i am hungry", "i am angry"))
+    found = as_heard(Recognition("sponge", "reject", 0.04, "I am hungry.", 0.8, alternatives=others), CONFIG)
+    assert found is not None and (found.text, found.confidence, found.alternatives) == ("i am hungry", 0.0, others[1:])
+    assert as_heard(Recognition("sponge", "reject", 0.04, "I am hungry.", 0.6), CONFIG) is None
+    assert as_heard(Recognition("", "silence", 0.0), CONFIG) is None
 
 
 def test_letters_of_one_group_sound_alike() -> None:

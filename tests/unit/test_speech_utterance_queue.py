@@ -47,6 +47,7 @@ class Robot(Node):
     def __init__(self, **changes: object) -> None:
         super().__init__(SpeechService, msgspec.structs.replace(CONFIG, **changes), SCENE)
         self.commands = self.bus.tap(topics.VOICE_COMMAND)
+        self.unclear = self.bus.tap(topics.SPEECH_UNCLEAR)
         self.stops = self.bus.tap(topics.ROBOT_STOP)
         self.results = self.bus.tap(topics.SPEECH_RESULT)
         self.sound = self.bus.tap(topics.AUDIO_OUT)
@@ -125,16 +126,20 @@ def test_speech_to_somebody_else_is_ignored(robot: Robot, said: dict[str, Sample
 
 
 @pytest.mark.slow
-def test_nonsense_after_the_wake_word_is_said_so_once_and_the_window_stays(
+def test_what_is_no_command_after_the_wake_word_the_brain_weighs_once_and_the_window_stays(
     robot: Robot, said: dict[str, Samples]
 ) -> None:
-    robot.hear(said["hey jarvis, the weather is nice today"], after=8.0)
+    robot.hear(said["hey jarvis, the weather is nice today"], after=4.0)
     assert not robot.commands
+    words = msgspec.json.decode(robot.unclear[0], type=m.VoiceCommand)
+    assert (words.text, words.confidence) == ("the weather is nice today", 0.0)
+    robot.ask(f"say {m.NOT_UNDERSTOOD}", "g1")
+    robot.step(6.0)
     statuses = [msgspec.json.decode(p, type=m.SpeechStatus) for p in robot.statuses]
     assert [s.code for s in statuses if s.code] == ["NO_COMMAND"]
     assert robot.states()[-2:] == ["speaking", "listening"]
     robot.hear(said["the weather is nice today"])
-    assert robot.states().count("speaking") == 1, "it does not talk to a television for ever"
+    assert len(robot.unclear) == 1, "no television is talked to for ever"
     robot.hear(said["bring me the red mug"])
     assert robot.commanded() == ["bring me the red mug"]
     robot.step(CONFIG.wake_window + 1)

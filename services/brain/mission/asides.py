@@ -1,4 +1,7 @@
-"""What people say to a robot at work: a question is answered beside the mission, a command waits or takes its place."""
+"""What people say to a robot at work: a question is answered beside the mission, a command waits or takes its place.
+
+And what speech could make nothing of, of a robot at rest.
+"""
 
 import msgspec
 
@@ -22,6 +25,15 @@ class Asides:
         self._waiting: m.VoiceCommand | None = None
         self._asked = ""
         self._since = 0.0
+        self._unclear = False
+
+    def weigh(self, words: m.VoiceCommand) -> None:
+        """Find out whether what speech takes for no command is one for the planner; nothing of it is done unasked."""
+        ctx = self._ctx
+        if ctx.config.pipeline == "vla" and ctx.state in m.OPEN_STATES and self._waiting is None:
+            self._waiting, self._asked, self._since, self._unclear = words, "", ctx.now, True
+        else:
+            ctx.say(m.NOT_UNDERSTOOD)
 
     def hear(self, command: m.VoiceCommand) -> Interjection | None:
         """Take what was said while a mission is under way; an interjection that has to interrupt it is given back."""
@@ -36,7 +48,7 @@ class Asides:
             case "idle":
                 self._ctx.note("not meant for me", command.text)
             case "aside":
-                self._waiting, self._asked, self._since = command, "", self._ctx.now
+                self._waiting, self._asked, self._since, self._unclear = command, "", self._ctx.now, False
             case _:
                 return said
         return None
@@ -48,11 +60,18 @@ class Asides:
             return
         if ctx.now - self._since > ANSWER_WITHIN:
             self._waiting = None
-            self.speak("I cannot answer that now. Please ask me again.")
+            if self._unclear:
+                ctx.say(m.NOT_UNDERSTOOD)
+            else:
+                self.speak("I cannot answer that now. Please ask me again.")
         elif not self._asked and not ctx.peers.planner.outstanding:
             self._asked = ctx.mission.next_goal()
             request = m.PlanRequest(
-                id=self._asked, command=waiting.text, world=ctx.known_world(), history=ctx.history(at_work=True)
+                id=self._asked,
+                command=waiting.text,
+                world=ctx.known_world(),
+                history=ctx.history(at_work=not self._unclear),
+                alternatives=waiting.alternatives if self._unclear else [],
             )
             ctx.peers.planner.send_only(topics.PLAN_REQUEST, request)
 
@@ -61,13 +80,27 @@ class Asides:
         if not self._asked or plan.request_id != self._asked:
             return False
         command, self._waiting, self._asked = self._waiting, None, ""
-        if command is not None and plan.steps and any(s.action != "say" for s in plan.steps):
+        if self._unclear:
+            self._weighed(command, plan)
+        elif command is not None and plan.steps and any(s.action != "say" for s in plan.steps):
             self._queue(command, command.text)
         elif plan.steps:
             self.speak(" ".join(s.text for s in plan.steps))
         else:
             self.speak(f"I cannot answer that: {plan.detail or 'I do not understand it'}.")
         return True
+
+    def _weighed(self, command: m.VoiceCommand | None, plan: m.ActionPlan) -> None:
+        """Ask about the transcription for which there is a plan."""
+        ctx = self._ctx
+        if command is None or ctx.mission.active or ctx.voice.command is not None:
+            return
+        texts = [command.text, *(one.text for one in command.alternatives)]
+        if plan.suggestion in texts or plan.steps:
+            text = plan.suggestion or command.text
+            ctx.voice.command = msgspec.structs.replace(command, text=text, confidence=0.0, alternatives=[])
+        else:
+            ctx.say(m.NOT_UNDERSTOOD)
 
     def speak(self, text: str) -> None:
         """Say something beside the mission."""

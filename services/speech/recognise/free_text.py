@@ -87,6 +87,14 @@ def without_itself(found: Recognition) -> Recognition:
     return replace(found, alternatives=tuple(others[:MOST]))
 
 
+def as_heard(found: Recognition, config: SpeechConfig) -> Recognition | None:
+    """What was no command, in the words of its transcription, for somebody who knows more; None if hardly heard."""
+    text = _plain(found.free, config)
+    if found.verdict == "silence" or found.certainty < config.certain or not text:
+        return None
+    return without_itself(replace(found, text=text, confidence=0.0))
+
+
 def cost(text: str, names: Container[str], config: SpeechConfig) -> float:
     """Cost of a transcription before anything was heard, a negative log-probability."""
     return COSTS[understood(_plain(text, config), names)]
