@@ -31,6 +31,8 @@ def _faults(plan: FloorPlan) -> Iterator[str]:
     for n, wall in enumerate(plan.walls, 1):
         if wall.start == wall.end or min(wall.thickness, wall.height) <= 0:
             yield f"wall {n}, from {wall.start} to {wall.end}, needs two ends, a thickness and a height"
+        if sunk := next((r.name for r in plan.receptacles if wall.footprint.contains(*r.center[:2])), ""):
+            yield f"receptacle {sunk!r} has its middle in wall {n}, from {wall.start} to {wall.end}"
     for room in plan.rooms:
         if not (room.low[0] < room.high[0] and room.low[1] < room.high[1]):
             yield f"room {room.name!r}: low {room.low} is not below and left of high {room.high}"

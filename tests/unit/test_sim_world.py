@@ -227,6 +227,10 @@ def test_a_snapshot_restores_the_whole_state(tmp_path: Path) -> None:
         (("size = [0.60, 1.60]", "size = [0.60, 1.60], yaw = 90"), "angles are radians (90.0 degrees are 1.571)"),
         (("size = [0.60, 1.60]", "size = [0.60, 1.60], rotation = 90"), "there are name, kind, center, size, yaw"),
         (("center = [2.30, 0.0", "center = [23.0, 0.0"), "receptacle 'table' is at (23.0, 0.0), outside of low"),
+        (
+            ("center = [2.30, 0.0", "center = [2.86, 0.0"),
+            "'table' has its middle in wall 2, from (2.9, -1.5) to (2.9, 1.5)",
+        ),
         (("x = 0.0, y = 0.0", "x = 0.4, y = 0.0"), "home (0.4, 0.0) is 0.12 m from what stands there"),
         (("x = 0.0, y = 0.0", "x = 30.0, y = 0.0"), "home (30.0, 0.0) is outside of low"),
         (("mass = 0.12", "mass = -1.0"), "'yellow block' needs a positive size and mass"),
