@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
+from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan, Place, Receptacle
+from common.free_sides import CELL, reached
 from common.furniture_tops import seats
 from common.geometry import Array, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
@@ -47,6 +49,9 @@ LEAST_GAIN = 1.0
 """New points that make a viewpoint worth its way [count]."""
 SEE_OVER = 0.3
 """Furniture that ends less than this below the camera hides what is behind it [m]."""
+APART, PATCH = 4, 2
+"""From one spot of free floor to the next from which what is hidden is looked at [cells], 20 cm, and up to how many
+hidden points are left alone [count]: beside them enough of a thing shows."""
 HEADINGS = 12
 """Directions that are compared when the robot turns on the spot [count]: 30 degrees, half of what a picture shows."""
 
@@ -62,7 +67,7 @@ def _outlines(plan: FloorPlan) -> FloorPlan:
     surfaces = tuple(
         msgspec.structs.replace(r, name="", aliases=(), named=True, colour="", spawn=True) for r in plan.receptacles
     )
-    home = Place(name="", x=0.0, y=0.0)
+    home = Place(name="", x=plan.home.x, y=plan.home.y)
     return FloorPlan(
         name="", low=plan.low, high=plan.high, home=home, walls=plan.walls, furniture=plan.furniture,
         receptacles=surfaces,
@@ -82,7 +87,7 @@ class Viewpoints:
     """
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
-        self._camera = camera
+        self._camera, self._plan = camera, floor_plan
         self._surfaces = [*(r for r in floor_plan.receptacles if r.kind != "bin"), *seats(floor_plan)]
         found = [_points_on(r) for r in self._surfaces]
         self.points: Array = np.concatenate(found or [np.empty((0, 3))])
@@ -95,7 +100,35 @@ class Viewpoints:
     @cached_property
     def _views(self) -> list[tuple[Pose2, Mask]]:
         before = [pose for r in self._surfaces for pose in _poses_before(r)]
-        return [(pose, shown) for pose in before if (shown := self.visible(pose)).any()]
+        views = [(pose, shown) for pose in before if (shown := self.visible(pose)).any()]
+        return views + self._from_elsewhere(views)
+
+    def _from_elsewhere(self, views: list[tuple[Pose2, Mask]]) -> list[tuple[Pose2, Mask]]:
+        """Poses from any free floor for what shows from no view where the base fits: a passage before a dresser may be
+        too narrow for each of them."""
+        cells = Cells(self._plan, CELL)
+        home = self._plan.home
+        floor = reached(static_distances(cells, self._plan), CELL, cells.cell(home.x, home.y))
+        hidden = ~np.any(
+            [np.zeros(len(self.points), bool)] + [s for p, s in views if floor[cells.cell(*p[:2])]], axis=0
+        )
+        spots = cells.centres()[::APART, ::APART][floor[::APART, ::APART]]
+        found: list[tuple[Pose2, Mask]] = []
+        while hidden.any():
+            best, most = None, PATCH
+            for x, y in spots.tolist():
+                to = self.points[hidden, :2] - (x, y)
+                if not len(near := to[np.hypot(*to.T) < REACH]):
+                    continue
+                pose = (round(x, 3), round(y, 3), round(float(math.atan2(*near.mean(axis=0)[::-1])), 3))
+                shown = self.visible(pose)
+                if (count := int(np.count_nonzero(shown & hidden))) > most:
+                    best, most = (pose, shown), count
+            if best is None:
+                break
+            found.append(best)
+            hidden &= ~best[1]
+        return found
 
     @cached_property
     def poses(self) -> list[Pose2]:

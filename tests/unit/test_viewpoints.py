@@ -200,3 +200,18 @@ def test_a_shelf_beside_the_robot_is_not_passed_by_and_come_back_to() -> None:
     first = viewpoint_search.elsewhere(flat, views, (0.5, 2.0, -1.57), [])
     assert first is not None
     assert views.visible(first)[views.surface == 0].any()
+
+
+def test_what_shows_from_no_pose_before_it_is_looked_at_from_where_there_is_floor() -> None:
+    """A passage before a dresser that is wide enough for the robot, and too narrow for the usual distances."""
+    flat = FloorPlan(
+        name="flat", low=(0.0, 0.0), high=(4.0, 4.0), home=Place(name="home", x=0.6, y=3.0),
+        furniture=(Box(name="bed", center=(2.0, 1.65, 0.35), size=(1.8, 1.0, 0.7)),),
+        receptacles=(
+            Receptacle(name="dresser", kind="counter", center=(2.0, 0.2, 0.8), size=(1.0, 0.4), approach=((0.0, 1.0),)),
+        ),
+    )  # fmt: skip
+    views, looked_from = Viewpoints(flat, NOMINAL), list[Pose2]()
+    while (view := viewpoint_search.elsewhere(flat, views, (0.6, 3.0, 0.0), looked_from)) is not None:
+        looked_from.append(view)
+    assert views.covered(looked_from).mean() > 0.9
