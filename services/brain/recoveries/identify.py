@@ -5,6 +5,7 @@ from functools import partial
 from py_trees.behaviour import Behaviour
 
 from common.naming.likeness import LEAST, LIKELY
+from common.naming.names import normalise
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.find import LocateObject, known_by_name
@@ -48,9 +49,11 @@ remains_possible = partial(may_be, least=LEAST)
 
 
 def unknown_by_name(ctx: Context, task: Task, there: bool) -> bool:
-    """An object may be meant by words that say nothing of looks: to look on for it would not tell which it is.
+    """An object may be meant by a word that says nothing of looks, a trophy, be it yellow: to look on for it would not
+    tell which it is.
 
     `there`: only where the person has said where it is.
     """
     told = not there or bool(ctx.told_points(task.item).any())
-    return told and not known_by_name(ctx, task.item) and remains_possible(ctx)
+    head = normalise(task.item).split()[-1:]
+    return told and not known_by_name(ctx, task.item, *head) and remains_possible(ctx)

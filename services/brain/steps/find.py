@@ -173,11 +173,11 @@ class WithinReach(Leaf):
         return ctx.fail("GRABBING", "OUT_OF_REACH", detail, f"The {self._item} stands too high for me.")
 
 
-def known_by_name(ctx: Context, item: str) -> bool:
-    """The words for an object were taught, or say what it looks like."""
+def known_by_name(ctx: Context, item: str, head: str = "") -> bool:
+    """The words for an object were taught, or say what it looks like; so does its `head`, if that is given."""
     names = ctx.io.latest(topics.HOUSEHOLD_NAMES)
     taught = {normalise(one.name) for one in names.names} if names else set()
-    return normalise(item) in taught or describes(item, ctx.io.household)
+    return normalise(item) in taught or describes(head or item, ctx.io.household)
 
 
 def label_of(ctx: Context, item: str) -> str:
