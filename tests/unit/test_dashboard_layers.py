@@ -1,6 +1,8 @@
 """Costmap and grasp candidates as pictures, and how far the robot is from its set-points."""
 
 from math import pi
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from common import messages as m
 from common.geometry import matrix_quat
 from common.household import load_household
 from services.dashboard.panels.tracking_error import arm_error, off_path
-from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
+from services.dashboard.scene.layers import FOOTPRINT, STATES, Layers, forks, picture
 from services.manipulation.grasps.grasp import shown
 from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
@@ -52,6 +54,22 @@ def test_a_fork_is_as_wide_as_the_grasp_and_points_along_the_approach() -> None:
     assert abs(segments[1, 0, 1] - segments[1, 1, 1]) == pytest.approx(0.072)
     assert tuple(colours[0, 0]) == STATES["open"]
     assert len(forks([])[0]) == 0
+
+
+def test_the_objects_of_a_question_are_numbered_until_it_is_answered() -> None:
+    shown: list[str] = []
+
+    def add_label(name: str, text: str, position: m.Vec3) -> SimpleNamespace:
+        shown.append(text)
+        return SimpleNamespace(remove=lambda: shown.remove(text))
+
+    server: Any = SimpleNamespace(scene=SimpleNamespace(add_label=add_label))
+    layers = Layers(server)
+    for places in ([(1.0, 2.0, 0.8), (1.5, 2.0, 0.8)], [(1.0, 2.0, 0.8), (1.5, 2.0, 0.8)]):
+        layers.offered(places)
+        assert shown == ["1?", "2?"]
+    layers.offered([])
+    assert shown == []
 
 
 def test_distance_to_the_path_is_to_its_nearest_piece() -> None:

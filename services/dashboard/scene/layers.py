@@ -1,4 +1,4 @@
-"""What navigation and manipulation think, laid over the 3-D view: costmap and grasp candidates."""
+"""What the robot thinks, laid over the 3-D view: costmap, grasp candidates, and the objects that it asks about."""
 
 from typing import Any
 
@@ -14,6 +14,8 @@ FOOTPRINT = 0.3
 """Clearance [m] up to which the base's centre cannot be."""
 FLOOR = 0.012
 """Height [m] of the costmap above the floor; chosen: the two do not flicker."""
+NUMBER = 0.22
+"""Height [m] of a number over an object's middle; chosen: above its name."""
 STATES = {"open": (150, 150, 150), "failed": (224, 49, 49), "chosen": (47, 158, 68)}
 FINGER, DEPTH, STEM = 0.05, 0.05, 0.08
 """Lengths [m] of the drawn fork: its fingers, how far its palm is behind the pinch point, its stem; chosen: about the
@@ -67,6 +69,20 @@ class Layers:
         self._place: tuple[float, ...] = ()
         self._cells = b""
         self._grasps: Any = None
+        self._offered: list[m.Vec3] = []
+        self._numbers: list[Any] = []
+
+    def offered(self, places: list[m.Vec3]) -> None:
+        """Number the objects that the person is asked about, in the order in which the question names them."""
+        if places == self._offered:
+            return
+        for number in self._numbers:
+            number.remove()
+        self._offered = places
+        self._numbers = [
+            self._scene.add_label(f"/offered/{n}", f"{n}?", position=(x, y, z + NUMBER))
+            for n, (x, y, z) in enumerate(places, 1)
+        ]
 
     def costmap(self, costmap: m.Costmap | None, visible: bool) -> None:
         """Show the newest costmap.

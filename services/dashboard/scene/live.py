@@ -77,7 +77,9 @@ class LiveScene:
             view.objects(world.objects, t, self._ghost_after, panels.labels)
 
     def _overlay(self) -> None:
-        """What navigation and manipulation think."""
+        """What navigation and manipulation think, and what the brain asks about."""
+        brain = self._io.latest(topics.BRAIN_STATE)
+        self._layers.offered(brain.offered if brain is not None else [])
         try:
             self._layers.costmap(self._io.latest(topics.COSTMAP), self._panels.costmap)
         except ValueError as error:
