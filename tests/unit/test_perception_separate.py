@@ -1,6 +1,7 @@
 """Objects that touch in the picture are cut apart; what is printed on one does not cut it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment, Surface
 from services.perception.segments.separate import pieces
-from services.perception.views.view import View
+from services.perception.views.view import Mask, View
 
 SIDE = 200
 """Of the picture [px]."""
@@ -138,6 +139,30 @@ def test_a_blade_and_its_handle_are_one() -> None:
     assert jointed(far, tool, cut, 0.0015) is not None, "a side that another hides"
     view, high = rod([GREEN, RED], [0.03, 0.045])
     assert jointed(view, high, (high.points[:, 1] > 0.0).astype(np.intp), 0.0015) is not None
+
+
+def slab(inside: Callable[[Array, Array], Mask], red: Callable[[Array, Array], Mask]) -> tuple[View, Segment]:
+    """What lies flat before the camera, 15 mm high: its outline, and the part of it that is red and not brown."""
+    rays = looks()
+    far = (FLOOR + 0.015 - EYE[2]) / rays[..., 2]
+    x, y = far * rays[..., 0] - 1.0, far * rays[..., 1]
+    rgb = np.where(red(x, y)[..., None], np.array(RED), np.array((150, 100, 60))).astype(np.uint8)
+    return measured(np.where(inside(x, y), far, np.inf), rgb)
+
+
+def test_what_has_no_shape_of_its_own_belongs_to_what_it_is_level_with() -> None:
+    def handle(x: Array, y: Array) -> Mask:
+        return (np.abs(x) < 0.015) & (y > 0.0) & (y < 0.15)
+
+    view, bat = slab(
+        lambda x, y: (np.hypot(x, y) < 0.075) | handle(x, y), lambda x, y: (np.hypot(x, y) < 0.065) & (y < 0.05)
+    )
+    (whole,) = pieces(view, bat)
+    assert len(whole.segment.rows) == len(bat.rows)
+    cut = (view.rgb[bat.rows, bat.columns, 1] > 60).astype(np.intp)
+    assert jointed(view, bat, cut, 0.0015, [1]) is None and jointed(view, bat, cut, 0.0015) is not None
+    lower = replace(view, depth=(view.depth + 0.03 * (view.rgb[..., 1] > 60)).astype(np.float32))
+    assert jointed(lower, bat, cut, 0.0015, [1]) is not None, "what lies on another"
 
 
 def test_what_is_as_long_as_a_ladle_is_one() -> None:

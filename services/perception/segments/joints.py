@@ -1,5 +1,8 @@
 """Whether low pieces hang together end to end: a blade and its handle are one tool, whatever their colours. Pure."""
 
+import math
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,12 +19,17 @@ THREAD = 0.05
 """The same, up to which it is one whatever the step: what hides a part of another does so along a side."""
 STEP, STEP_NOISE = 0.006, 2.0
 """Step of depth [m] at that line, plus that of noise, up to which one goes on in the other."""
+ALL_ALONG = 0.75
+"""Share of that line on which there is no such step, from which a piece that has no shape of its own belongs to the
+other. Chosen: a wooden handle that runs round the red of its bat does; what lies on another or behind it steps down."""
 
 
-def jointed(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) -> NDArray[np.intp] | None:
+def jointed(
+    view: View, segment: Segment, cut: NDArray[np.intp], noise: float, shapeless: Collection[int] = ()
+) -> NDArray[np.intp] | None:
     """The number (n,) of the piece of each pixel of `cut`, those that meet at a joint as one; None if all do.
 
-    `noise` [m]: of points along the line of sight.
+    `noise` [m]: of points along the line of sight; `shapeless`: pieces that no shape explains.
     """
     if float(np.percentile(segment.points[:, 2], 98)) - segment.surface.height > LOW:
         return cut
@@ -40,8 +48,9 @@ def jointed(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) -
         for b in range(a):
             meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
             share = len(meet) / min(outline[a], outline[b])
-            goes_on = 0 < share < SHORT and np.quantile(meet, 0.25) < STEP + STEP_NOISE * noise
-            if goes_on or 0 < share < THREAD:
+            some = 0.25 if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
+            level = np.mean(meet < STEP + STEP_NOISE * noise) >= some if len(meet) else False
+            if level or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
     left, found = np.unique(names[cut], return_inverse=True)
     return found.reshape(-1).astype(np.intp) if len(left) > 1 else None

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
-from common.geometry import Array, Rectangle
+from common.geometry import Rectangle
 from services.perception.segments.air import hangs
+from services.perception.segments.colours import IN_A_CROWD, LEAST_SHARE, by_colour
 from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment
@@ -24,15 +24,6 @@ from services.perception.shapes.primitives import quantile
 from services.perception.unlisted import measured, noise_of
 from services.perception.views.view import View
 
-CHROMA = 0.05
-"""Difference of chromaticity (red and green by the sum) of two pixels from which a colour ends between them. Chosen:
-five times the noise of a pixel, smoothed, in a lit room."""
-BRIGHT = 0.30
-"""Difference of brightness, by that of both, from which a colour ends: black beside white has no other."""
-LEAST_SHARE = 0.08
-"""Share of the segment's pixels that a piece has at least."""
-MOST_PIECES, IN_A_CROWD = 4, 9
-"""Patches of colour beyond which they are print on one object, and beyond which they are no crowd of objects."""
 GAIN, NOISE_GAIN = 0.0008, 0.3
 """How much less [m], plus that of the noise, the mean distance from the shapes must be for pieces to be objects."""
 FINE, FINE_NOISE = 0.0006, 0.45
@@ -105,8 +96,8 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
             beside = Piece(segment, measured(view, segment, hanging))
             whole = beside if beside.shape.residual < whole.shape.residual else whole
             continue
-        parts = [Piece(s, measured(view, s)) for s in cuts]
-        if any(_stands_on(p, parts) for p in parts):
+        parts = _level_joined(view, segment, cut, [Piece(s, measured(view, s)) for s in cuts])
+        if len(parts) < 2 or any(_stands_on(p, parts) for p in parts):
             continue
         share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
         residual = float(share @ [p.shape.residual for p in parts])
@@ -116,6 +107,20 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
         if better or (whole.shape.family == "irregular" and shaped) or _mostly(whole, parts):
             return [found for p in parts for found in _pieces(view, p, again - 1)]
     return [whole]
+
+
+def _level_joined(view: View, segment: Segment, cut: NDArray[np.intp], parts: list[Piece]) -> list[Piece]:
+    """The parts of a cut, those that no shape explains together with what they are level with."""
+    noise = noise_of(view, segment)
+    shapeless = [n for n, p in enumerate(parts) if not _explained(p, noise)]
+    joint = jointed(view, segment, cut, noise, shapeless) if shapeless else cut
+    if joint is None or int(joint.max()) + 1 == len(parts):
+        return [] if joint is None else parts
+    return [Piece(s, measured(view, s)) for s in _cut(segment, joint)]
+
+
+def _explained(piece: Piece, noise: float) -> bool:
+    return piece.shape.family != "irregular" and piece.shape.residual < FINE + FINE_NOISE * noise
 
 
 def _stands_on(piece: Piece, parts: list[Piece]) -> bool:
@@ -165,60 +170,6 @@ def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
             )
         )
     return found
-
-
-def by_colour(view: View, segment: Segment, most: int = MOST_PIECES) -> NDArray[np.intp] | None:
-    """Number (n,) of the patch of one colour that each pixel belongs to; None if there is only one, or over `most`."""
-    top, left = int(segment.rows.min()), int(segment.columns.min())
-    shape = int(segment.rows.max()) - top + 1, int(segment.columns.max()) - left + 1
-    window = slice(top, top + shape[0]), slice(left, left + shape[1])
-    rgb = view.rgb[window].astype(np.float32) / np.float32(255)
-    mask = np.zeros(shape, bool)
-    mask[segment.rows - top, segment.columns - left] = True
-    smooth = _smoothed(rgb, mask)
-    total = np.maximum(smooth.sum(axis=-1), 0.02)
-    red, green = smooth[..., 0] / total, smooth[..., 1] / total
-    edge = np.zeros(shape, bool)
-    for axis in (0, 1):
-        step = np.abs(np.diff(red, axis=axis)) + np.abs(np.diff(green, axis=axis))
-        a, b = (np.take(total, range(*r), axis=axis) for r in ((1, shape[axis]), (0, shape[axis] - 1)))
-        ends = (step > CHROMA) | (np.abs(a - b) > BRIGHT * (a + b))
-        edge[(slice(None, -1), slice(None)) if axis == 0 else (slice(None), slice(None, -1))] |= ends
-    labels = ndimage.label(mask & ~edge)[0]
-    counts = np.bincount(labels[mask], minlength=1)
-    counts[0] = 0
-    large = np.flatnonzero(counts >= max(MIN_PIXELS, LEAST_SHARE * len(segment.rows)))
-    if not 2 <= len(large) <= most:
-        return None
-    # What belongs to no large patch joins the nearest in the picture.
-    numbered = np.full(shape, -1)
-    for n, label in enumerate(large):
-        numbered[labels == label] = n
-    nearest = ndimage.distance_transform_edt(numbered < 0, return_distances=False, return_indices=True)
-    found: NDArray[np.intp] = numbered[tuple(nearest)][segment.rows - top, segment.columns - left].astype(np.intp)
-    return _alike_joined(found, smooth[segment.rows - top, segment.columns - left].astype(np.float64))
-
-
-def _smoothed(rgb: NDArray[np.float32], mask: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Mean colour of the 3 x 3 pixels of the mask around each."""
-    weight = ndimage.uniform_filter(mask.astype(np.float32), 3)
-    planes = [ndimage.uniform_filter(rgb[..., i] * mask, 3) / np.maximum(weight, 1e-3) for i in range(3)]
-    return np.stack(planes, axis=-1)
-
-
-def _alike_joined(cut: NDArray[np.intp], rgb: Array) -> NDArray[np.intp] | None:
-    """Patches of the same colour are one: print or a rim may lie between them."""
-    colours = []
-    for n in range(int(cut.max()) + 1):
-        middle = np.median(rgb[cut == n], axis=0)
-        colours.append(np.append(middle[:2] / max(0.02, middle.sum()), 0.1 * middle.sum()))
-    joined = np.arange(len(colours))
-    for i in range(len(colours)):
-        for j in range(i):
-            if np.abs(colours[i] - colours[j]).sum() < CHROMA:
-                joined[joined == joined[i]] = joined[j]
-    names, found = np.unique(joined[cut], return_inverse=True)
-    return found.reshape(-1).astype(np.intp) if len(names) > 1 else None
 
 
 def by_valley(view: View, segment: Segment) -> NDArray[np.intp] | None:
