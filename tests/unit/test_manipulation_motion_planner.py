@@ -6,15 +6,17 @@ from itertools import pairwise, takewhile
 import numpy as np
 import pytest
 
+from common.approach import EDGE_DISTANCE
 from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import whole
 from services.manipulation.grasps.grasp import approach_rotation
-from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.grasps.grasped_object import SHRINK, GraspedObject
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import NEAR, LastAnswers, Planner, inflated
 from services.manipulation.planning.plan_place import DEEPEST, plan_place
 from services.sim.model import own
+from tests.unit.test_manipulation_stances import PLANNER
 
 
 def test_where_the_arm_is_stretched_it_leaves_the_way_it_came() -> None:
@@ -180,6 +182,20 @@ def test_a_carry_pose_that_has_little_room_is_better_than_none() -> None:
         planner.arm.set_obstacles((), 0.0)
         clear = any(not planner.arm.collides(planner.arm.nearest_turn(c, start)) for c in planner.carries)
         assert not clear or planner.to_carry(held, start, ()), f"{size:.2f} m"
+
+
+@pytest.mark.parametrize("size", [(0.12, 0.12, 0.18), (0.065, 0.1, 0.2), (0.07, 0.07, 0.26), (0.16, 0.16, 0.06)])
+@pytest.mark.parametrize("tilt", [15, 45, 90])
+def test_what_is_carried_stays_behind_the_edges_that_the_base_drives_up_to(
+    size: tuple[float, float, float], tilt: float
+) -> None:
+    turn, offset = approach_rotation(0.0, np.radians(tilt)), np.array([0.0, 0.0, size[2] / 2])
+    held = GraspedObject("thing", "", turn, offset, size, 0.02, 0.0)
+    path = PLANNER.to_carry(held, PLANNER.carries[-1], ())
+    assert path is not None
+    hand, (half, middle) = PLANNER.arm.pose(whole(path)[-1]), held.box()
+    front = float((hand.position + hand.rotation @ middle)[0] + np.abs(hand.rotation[0]) @ (half + SHRINK))
+    assert front < EDGE_DISTANCE
 
 
 def test_what_was_found_for_a_target_is_found_once() -> None:

@@ -45,7 +45,8 @@ LEAVING = 0.15
 """Way [m] of the hand from where it has lifted something on which it may meet what stands around. Chosen: at the speed
 of transit a bowl that hung askew met its shelf with 67 N in the 60 ms until the arm stood."""
 # Tip and turn [rad] of the hand at the carry pose: for long objects it is turned or tips up, so that they stay clear.
-_CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
+# At 0.2 what was taken from the side keeps within the 0.35 m to the edges that the base drives up to, at 0.4 no more.
+_CARRY = tuple((tip, turn) for tip in (0.0, 0.2, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
 
 class PlanError(Exception):
