@@ -48,6 +48,24 @@ def test_it_is_held_by_its_body_from_the_front() -> None:
     assert around and min(abs(g.width - 0.066) for g in around) < 0.01
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_dozen_points_a_slice_tell_how_wide_it_is(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    turns, heights = rng.uniform(math.pi / 2, 3 * math.pi / 2, 200), rng.uniform(-TALL / 2, TALL / 2, 200)
+    seen = np.column_stack([0.033 * np.cos(turns), 0.033 * np.sin(turns), heights])
+    found = surface(irregular(seen + rng.normal(0.0, 0.001, seen.shape))) - np.array(AT)
+    for level in np.unique(found[:, 2])[2:-2]:
+        assert np.ptp(found[found[:, 2] == level, 1]) == pytest.approx(0.066, abs=0.008)
+
+
+@pytest.mark.parametrize("beside", [0.0, 0.02])
+def test_a_handle_before_a_body_does_not_bring_it_nearer(beside: float) -> None:
+    handle = front((0.006, 0.006), -0.04, 0.04, beside) - (0.06, 0.0, 0.0)
+    found = surface(irregular(np.concatenate([front((0.033, 0.033), -TALL / 2, TALL / 2), handle]))) - np.array(AT)
+    sides = found[(np.abs(found[:, 2]) < 0.03) & (np.abs(found[:, 1]) > 0.028)]
+    assert sides[:, 0].mean() == pytest.approx(0.0, abs=0.005)
+
+
 def test_fingers_close_across_the_view_where_the_far_side_was_not_seen() -> None:
     narrow = irregular(front((0.03, 0.02), -0.1, 0.1))
     found = antipodal(narrow, 0.0, 0.085, 0.0761)

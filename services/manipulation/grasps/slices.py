@@ -8,16 +8,22 @@ that of the body.
 import math
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from services.manipulation.arm.arm_model import Array
 
 BAND, LEVELS = 0.010, 3
 """Height [m] of a slice, a dozen of the points that are told of a bottle, and at how many heights of it points lie."""
+ROUND_ABOUT = 0.010
+"""Height [m] above and below a slice's middle up to which points tell its outline: half a pad's length. A dozen points
+of the slice alone, of which one is 3 mm off and the outermost are missing, tell it so badly that no pads fit."""
 FEWEST = 4
 """Points from which a slice tells its outline; one with fewer is as the nearest that does."""
 APART = 0.018
-"""Gap [m] across the line of sight from which two parts of a slice are two: of the points 7 mm apart, which are left
-over of a surface, hardly two neighbours lie so far from each other."""
+"""Gap [m] from which two parts of a slice are two: of the points 7 mm apart, which are left over of a surface, hardly
+two neighbours lie so far from each other."""
 EDGE = 0.002
 """How far [m] the outline lies beyond the outermost point that was seen: half of the cells in which points are told."""
 DEEP = (0.5, 1.2)
@@ -35,7 +41,8 @@ def slices(seen: Array, away: Array, height: float, spacing: float) -> Array:
     local = np.stack([seen[:, :2] @ across, seen[:, :2] @ away, seen[:, 2]], axis=1)
     count = max(1, math.ceil(height / BAND))
     middles = -height / 2 + (np.arange(count) + 0.5) * height / count
-    outlines = [_ovals(local[np.abs(local[:, 2] - z) <= height / count / 2 + 1e-9]) for z in middles]
+    reach = max(height / count / 2, ROUND_ABOUT) + 1e-9
+    outlines = [_ovals(local[np.abs(local[:, 2] - z) <= reach]) for z in middles]
     told = [n for n, ovals in enumerate(outlines) if ovals]
     found = []
     for n, z in enumerate(middles):
@@ -53,18 +60,26 @@ def _ovals(points: Array) -> list[tuple[float, float, float, float]]:
     """Middle (across, away) and half width and depth [m] of the parts of a slice with points (n, 3)."""
     if len(points) < FEWEST:
         return []
-    ordered = points[np.argsort(points[:, 0])]
-    ends = np.flatnonzero(np.diff(ordered[:, 0]) > APART) + 1
     found = []
-    for part in np.split(ordered, ends):
-        middle, half = float(part[0, 0] + part[-1, 0]) / 2, float(part[-1, 0] - part[0, 0]) / 2
+    for part in _parts(points):
+        low, high = float(part[:, 0].min()), float(part[:, 0].max())
+        middle, half = (low + high) / 2, (high - low) / 2
         # How far back from its front an oval is there, by its half depth.
         back = 1.0 - np.sqrt(np.maximum(0.0, 1.0 - ((part[:, 0] - middle) / max(half, EDGE)) ** 2))
         bulge = np.polyfit(back, part[:, 1], 1)[0] if np.ptp(back) > BULGE else 0.0
         half += EDGE
         deep = min(max(float(bulge), DEEP[0] * half), DEEP[1] * half)
-        found.append((middle, float((part[:, 1] - deep * back).mean()) + deep, half, deep))
+        found.append((middle, float(np.median(part[:, 1] - deep * back)) + deep, half, deep))
     return found
+
+
+def _parts(points: Array) -> list[Array]:
+    """Points (n, 3) of a slice by what hangs together on the floor plan."""
+    pairs = cKDTree(points[:, :2]).query_pairs(APART, output_type="ndarray")
+    count = len(points)
+    graph = coo_matrix((np.ones(len(pairs)), tuple(pairs.T)), (count, count))
+    number, part = connected_components(graph, directed=False)
+    return [points[part == n] for n in range(number)]
 
 
 def _filled(oval: tuple[float, float, float, float], z: float, spacing: float, full: bool) -> Array:
