@@ -6,18 +6,22 @@ from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from typing import Any
 
+SHOWN = 20
+"""Known words that a message lists; chosen: all services, suites and fields, and not all topics."""
+
 
 class CliError(Exception):
     """Shown as `tidybot: <text>`; exit status 1."""
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """` (did you mean 'x'?)` for the closest known word, `; known: ...` when none is close."""
+    """` (did you mean 'x'?)` for the closest known word, `; known: ...` (the first of many) when none is close."""
     known = list(known)
     close = get_close_matches(word, known, n=3, cutoff=0.5)
     if close:
         return "; did you mean " + " or ".join(repr(c) for c in close) + "?"
-    return f"; known: {', '.join(known)}"
+    more = [f"and {len(known) - SHOWN} more"] if len(known) > SHOWN + 1 else []
+    return f"; known: {', '.join([*known[: SHOWN if more else None], *more])}"
 
 
 def checked(word: str, known: Iterable[str], what: str) -> str:

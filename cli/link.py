@@ -174,7 +174,7 @@ def robot_command(
     parser = commands.add_parser(run.__name__, help=what, **more)
     parser.set_defaults(run=run)
     if json:
-        parser.add_argument("--json", action="store_true")
+        parser.add_argument("--json", action="store_true", help="as JSON")
     add_options(parser)
     return parser
 

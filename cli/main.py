@@ -5,7 +5,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from cli.errors import CliError, near
 from common.bus.session import BusError
@@ -41,8 +41,20 @@ FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 """Exit statuses: a command failed, was mistyped, or was ended by Ctrl-C (128 + SIGINT)."""
 
 
+class Commands(argparse._SubParsersAction):  # type: ignore[type-arg]
+    """Commands whose own help begins with the line that the list of all commands has."""
+
+    def add_parser(self, name: str, *, help: str, **more: Any) -> argparse.ArgumentParser:
+        described = {"description": f"{help[0].upper()}{help[1:]}."} | more
+        return super().add_parser(name, help=help, **described)
+
+
 class Parser(argparse.ArgumentParser):
     """Names the nearest command or option after a typo."""
+
+    def __init__(self, **more: Any) -> None:
+        super().__init__(**more)
+        self.register("action", "parsers", Commands)
 
     def error(self, message: str) -> NoReturn:
         word = message.partition("invalid choice: '")[2].partition("'")[0]
@@ -82,6 +94,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # The reader (head, less) has gone; Python would complain again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except OSError as error:
+        if error.filename is None:
+            raise  # nothing that was named on the command line
+        print(f"tidybot: {error.filename}: {error.strerror}", file=sys.stderr)
         return FAILED
 
 

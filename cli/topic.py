@@ -196,7 +196,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser = commands.add_parser("topic", help="look at the bus: list, echo, hz, pub")
     actions = parser.add_subparsers(required=True, metavar="ACTION")
     one = actions.add_parser("list", help="every topic with payload, writers and rate")
-    one.add_argument("--json", action="store_true")
+    one.add_argument("--json", action="store_true", help="as JSON")
     one.set_defaults(run=list_topics)
     one = robot_command(actions, echo, "print what is and comes on a key; wildcards: 'brain/**'")
     one.add_argument("key")

@@ -1,6 +1,7 @@
 """`tidybot mcp --http`: the server over Streamable HTTP, with the access rules of the operator's page."""
 
 import os
+import socket
 import sys
 import tomllib
 from typing import TYPE_CHECKING, Any
@@ -85,8 +86,13 @@ async def serve(server: "MCPServer[Any]", host: str, port: int) -> None:
         server.streamable_http_app(streamable_http_path=PATH, transport_security=security, host=host), token
     )
     shown = f"[{host}]" if ":" in host else host
+    try:
+        family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        listening = socket.create_server((host, port), family=family)
+    except OSError as error:
+        raise CliError(f"--http {shown}:{port}: {error.strerror}") from None
     print(f"agents: http://{shown}:{port}{PATH}", file=sys.stderr)
     if token:
         print(f"each request needs the header  Authorization: Bearer {token}", file=sys.stderr, flush=True)
     options = uvicorn.Config(app, host=host, port=port, log_level="warning", timeout_graceful_shutdown=2)
-    await uvicorn.Server(options).serve()
+    await uvicorn.Server(options).serve(sockets=[listening])

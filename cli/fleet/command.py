@@ -190,7 +190,7 @@ def _options(parser: argparse.ArgumentParser, verb: bool = False) -> None:
         "--certificate", metavar="NAME", default=kept if verb else FLEET,
         help=f"where there are keys: whose (default {FLEET})",
     )  # fmt: skip
-    parser.add_argument("--json", action="store_true", default=kept if verb else False)
+    parser.add_argument("--json", action="store_true", default=kept if verb else False, help="as JSON")
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -73,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
     ]  # fmt: skip
     plan, supervision = Plan(args), Supervision(run_dir() / f"map-{args.port}")
     check_free(supervision, plan)
+    out.mkdir(parents=True, exist_ok=True)
     say = Console(highlight=False).print
     try:
         with interruptible():

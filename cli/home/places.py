@@ -119,5 +119,5 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     four.add_argument("things", nargs="*", help='such as "mugs"')
     four.set_defaults(run=forget_rule)
     for each in (parser, one, two, three, tidying, four):
-        each.add_argument("--json", action="store_true")
+        each.add_argument("--json", action="store_true", help="as JSON")
         add_options(each)

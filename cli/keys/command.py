@@ -10,6 +10,7 @@ import msgspec
 from cli.errors import CliError
 from cli.keys.authority import Authority, hosts_of
 from cli.processes.services import NAMES
+from common.bus.session import check_namespace
 from common.security.access import AGENT, OPERATOR, ROUTER, Role, Subject
 from common.security.keys import OFF, default_directory
 
@@ -59,9 +60,9 @@ def keys(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace) -> None:
-    for word in (args.client, *args.namespace.split("/")):
-        if word and not _WORD.fullmatch(word):
-            raise CliError(f"{word!r}: letters, digits, '_', '.' and '-' only")
+    check_namespace(args.namespace)
+    if args.client and not _WORD.fullmatch(args.client):
+        raise CliError(f"{args.client!r}: letters, digits, '_', '.' and '-' only")
     for host in args.host:
         if not _HOST.fullmatch(host):
             raise CliError(f"--host {host}: neither a name nor an address")
@@ -166,5 +167,5 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--force", action="store_true", help="a new authority and new certificates for everybody")
     parser.add_argument("--owner", type=int, metavar="UID", help="give the services' keys to this user (containers)")
     parser.add_argument("--list", action="store_true", help="what there is, and until when")
-    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--json", action="store_true", help="as JSON")
     parser.set_defaults(run=keys)

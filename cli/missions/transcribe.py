@@ -14,5 +14,5 @@ def transcribe(args: argparse.Namespace) -> int:
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser("transcribe", help="what the robot understands in recordings, one line a file")
     parser.add_argument("wav", nargs="+", type=Path)
-    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--json", action="store_true", help="as JSON")
     parser.set_defaults(run=transcribe)

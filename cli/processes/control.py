@@ -145,7 +145,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser = commands.add_parser("down", help="stop everything that `up` started")
     parser.set_defaults(run=down)
     parser = commands.add_parser("ps", help="the processes: state, restarts, memory")
-    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--json", action="store_true", help="as JSON")
     parser.set_defaults(run=ps)
     parser = commands.add_parser("restart", help="restart one service; the others go on")
     parser.add_argument("service")

@@ -15,6 +15,7 @@ from cli.link import use_keys
 from cli.processes.services import NAMES, OPTIONAL, SECTIONS, SERVICES, Service
 from cli.processes.supervision import RunInfo, run_dir
 from common import config
+from common.bus.session import check_namespace
 from common.household import load_household
 from common.scene import SceneError, load_scene
 from common.security import keys
@@ -38,6 +39,7 @@ class Plan:
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
+        check_namespace(self.namespace)
         self.speed = _speed(args.speed)
         self.services = _selection(args.only, args.without, [n for n in OPTIONAL if getattr(args, n, False)])
         self.keys = certificates(getattr(args, "keys", OFF), self.names, self.namespace)

@@ -1,5 +1,6 @@
 """Zenoh sessions: endpoints, certificates, and an open session or the reason why there is none."""
 
+import re
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -27,6 +28,7 @@ PROBE_AFTER = 2.0
 sooner."""
 PROBE_PERIOD = 30.0
 """Time between two reports of why there is no router [s]; chosen: rarely enough not to flood a log."""
+_NAMESPACE = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
 ATTEMPT = 2.0
 """Longest single attempt to connect [s]; the lease of config/zenoh: who takes longer to answer is taken for frozen."""
 
@@ -75,6 +77,12 @@ def identity_for(connect: str, name: str, namespace: str) -> "Identity | None":
         raise BusError(str(error)) from None
 
 
+def check_namespace(namespace: str) -> None:
+    """Raises `BusError` for what cannot be the beginning of a robot's keys and a folder of its certificates."""
+    if namespace and not _NAMESPACE.fullmatch(namespace):
+        raise BusError(f"namespace {namespace!r}: letters, digits, '_', '.' and '-' only, or several such by '/'")
+
+
 def endpoints(connect: str) -> list[str]:
     return [e.strip() for e in connect.split(",") if e.strip()]
 
@@ -85,6 +93,7 @@ def client_config(connect: str, namespace: str = "", shown: "Identity | None" = 
     Raises:
         BusError: a bad endpoint or namespace.
     """
+    check_namespace(namespace)
     try:
         config = zenoh.Config.from_file(str(CONFIGS / "client.json5"))
         config.insert_json5("connect/endpoints", _json(endpoints(connect)))
@@ -94,7 +103,7 @@ def client_config(connect: str, namespace: str = "", shown: "Identity | None" = 
         if namespace:
             config.insert_json5("namespace", _json(namespace))
     except zenoh.ZError as error:
-        raise BusError(f"zenoh configuration for {connect!r}, namespace {namespace!r}: {error}") from None
+        raise BusError(f"zenoh configuration for {connect!r}: {error}") from None
     return config
 
 
@@ -157,8 +166,9 @@ def _awaited(
             why = _trouble(connect, shown)
             if why and wait is None:
                 raise BusError(why)
-            why = why or f"waiting for a router at {connect}; `python -m services.router` starts one"
-            print(f"{name}: {why}", file=sys.stderr, flush=True)
+            if wait is not None:
+                why = why or f"waiting for a router at {connect}; `tidybot up` starts one"
+                print(f"{name}: {why}", file=sys.stderr, flush=True)
         if wait is None:
             futures_wait([opening], 0.05)
         elif wait(0.05):

@@ -42,6 +42,12 @@ def plan(*words: str) -> plans.Plan:
         (["demo", "--object", "red mugg"], "'red mug'"),
         (["up", "--pipeline", "fecth"], "'fetch', 'vla'"),
         (["status", "--wait", "NAVIGATNG"], "'NAVIGATING'"),
+        (["up", "--namespace", "a/*"], "letters, digits"),
+        (["status", "--namespace", "my robot", "--connect", "tcp/127.0.0.1:1"], "letters, digits"),
+        (["topic", "echo", "nope", "--connect", "tcp/127.0.0.1:1"], "more"),
+        (["keys", "--dir", "/dev/null/keys"], "/dev/null/keys"),
+        (["map", "--out", "/dev/null/home"], "/dev/null/home"),
+        (["mcp", "--http", "256.1.1.1:80"], "--http 256.1.1.1:80"),
     ],
 )
 def test_a_mistake_is_one_line_that_names_the_remedy(
@@ -68,10 +74,18 @@ def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixtur
     assert "usage" in capsys.readouterr().out
 
 
+def test_the_help_of_a_command_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, what in ((["teach"], "Give the thing"), (["places", "rename"], "Give a part another name.")):
+        with pytest.raises(SystemExit):
+            main.main([*words, "--help"])
+        assert what in capsys.readouterr().out
+
+
 def test_no_router_is_said_with_the_remedy(capsys: pytest.CaptureFixture[str]) -> None:
     port = ports.free_port()
     assert main.main(["status", "--connect", f"tcp/127.0.0.1:{port}"]) == 1
-    assert "tidybot up" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "tidybot up" in said and len(said.splitlines()) == 1
 
 
 def test_another_speed_than_realtime_means_lockstep_with_every_paced_service() -> None:
