@@ -58,6 +58,7 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("doing", "what how why + are is + you + doing up busy working going happening on coming getting standing waiting"),
     ("doing", "how + are is + you it things everything + going coming getting are"),
     ("doing", "what + is + happening going task job mission + on your current happening present"),
+    ("doing", "what + next + is are do you comes now"),
     ("doing", "status report update news + status report update news any give your the"),
     ("whereabouts", "where whereabouts room + you + are standing at"),
     ("why", "why"),

@@ -154,13 +154,15 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "[(can | could) you] (carry | hold | lift) (two | three | four | several | many | more than one) "
         "(thing | things | objects | items) [at once | at a time | at the same time | together]",
     ),
-    Wording("hearing", "(can | do | did) you (hear | understand) me"),
+    Wording("hearing", "[(can | do | did) you] (hear | understand) me"),
     Wording("identity", "who are you", heard="who are you"),
     Wording(
         "thanks",
         "(thank you | thanks | cheers) [very much | a lot | so much | robot] | (well | good) (done | job)"
-        " | good (robot | boy | morning | evening | night) | hello | hi [there]",
+        " | good (robot | boy)",
         kind="reply",
     ),
+    Wording("greeting", "(hello | hi | hey | good (morning | afternoon | evening)) [there | robot]", kind="reply"),
+    Wording("parting", "(bye | goodbye | good night | see you) [then | robot]", kind="reply"),
 )  # fmt: skip
 """What can be heard of questions about the robot, and those with other words in them; the rest: itself.py."""

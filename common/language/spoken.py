@@ -18,7 +18,7 @@ from common.language.refusals import REFUSALS
 from common.language.simplify import simplified
 from common.language.verb_classes import classes
 from common.language.word_order import reworded
-from common.language.wording import Action
+from common.language.wording import COURTESIES, Action
 from common.naming.names import ALIKE
 
 Understanding = Literal["", "unlisted", "listed"]
@@ -27,7 +27,7 @@ LONGEST = 3
 """Most words of an unlisted noun (chosen: `portable record player`)."""
 _UNBOUND: frozenset[Action] = frozenset({"say", "teach", "name_place", "forget"})
 """What may be of words that nobody knows."""
-_NOTHING_TO_DO: frozenset[Action] = frozenset({"refuse", "mention", "remark", "thanks", "fetch_named", "named_at"})
+_NOTHING_TO_DO: frozenset[Action] = frozenset({"refuse", "mention", "remark", *COURTESIES, "fetch_named", "named_at"})
 """What is no command, or no more than a name."""
 _WORDS_THAT_TURN = (
     "who what when why how if unless not never don't didn't won't can't shouldn't wouldn't no said says told asked"

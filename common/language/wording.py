@@ -8,7 +8,8 @@ Action = Literal[
     "wait_there", "come_back", "leave", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "teach_owned", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
-    "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
+    "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks", "greeting",
+    "parting",
     "recall", "wish_at", "named_at", "put_held",
     "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
@@ -26,6 +27,8 @@ QUESTIONS: frozenset[Action] = frozenset(
     }
 )  # fmt: skip
 """What is answered in words."""
+COURTESIES: tuple[Action, ...] = ("thanks", "greeting", "parting")
+"""What is answered by a word of courtesy, and asks for nothing."""
 
 
 class Wording(NamedTuple):

@@ -220,7 +220,7 @@ class BrainService:
         """What is said to a robot at work: a question or a command for later goes beside, another command instead."""
         if (said := self._asides.hear(command)) is not None:
             self._interrupt(f"asked for something else: {said.text}")
-            self._asides.speak(f"All right, instead of that: {said.text}.")
+            self._asides.replaced(said.text)
             self.context.voice.command = msgspec.structs.replace(command, text=said.text, alternatives=[])
 
     def _receive_question(self, command: m.VoiceCommand) -> None:

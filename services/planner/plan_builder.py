@@ -20,7 +20,7 @@ NOT_UNDERSTOOD = "I do not understand"
 
 
 class Refusal(Exception):
-    """Why there is no plan, as a clause that can be spoken after "I cannot do that:"."""
+    """Why there is no plan, as a clause: spoken after "I cannot do that:", or alone if it begins with "I"."""
 
 
 class Lost(Refusal):

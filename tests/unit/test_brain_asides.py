@@ -55,7 +55,7 @@ def test_an_answer_that_never_comes_is_given_up_aloud() -> None:
 def test_a_command_for_later_is_carried_out_later() -> None:
     bench = planned()
     hear(bench, "after that bring me the apple")
-    assert bench.texts(SPEECH)[-1] == "say I will do that next: bring me the apple."
+    assert bench.texts(SPEECH)[-1] == "say Next I will bring you the apple."
     finish(bench)
     request = bench.next_goal(PLAN, 2)
     assert request.command == "bring me the apple"
@@ -77,9 +77,22 @@ def test_the_queue_has_an_end_and_a_stop_empties_it() -> None:
 def test_a_command_instead_takes_the_place_of_the_mission() -> None:
     bench = planned()
     hear(bench, "forget that, bring me the apple")
-    assert "instead of that: bring me the apple" in bench.texts(SPEECH)[-1]
+    assert bench.texts(SPEECH)[-1] == "say All right, I will bring you the apple instead."
     assert bench.next_goal(PLAN, 2).command == "bring me the apple"
     assert bench.outcome == "cancelled"
+
+
+@pytest.mark.parametrize(
+    ("said", "answer"),
+    [
+        ("wait, the blue one instead", "the blue one instead."),
+        ("sorry, I meant the green can", "the green can instead."),
+    ],
+)
+def test_a_thing_instead_is_named_as_a_thing(said: str, answer: str) -> None:
+    bench = planned()
+    hear(bench, said)
+    assert bench.texts(SPEECH)[-1] == f"say All right, {answer}"
 
 
 def test_yes_and_thanks_change_nothing() -> None:
@@ -192,4 +205,4 @@ def test_what_was_said_last_is_said_again() -> None:
     bench = planned()
     hear(bench, "after that bring me the apple")
     hear(bench, "say that again")
-    assert bench.next_goal(PLAN, 2).history.said == "I will do that next: bring me the apple."
+    assert bench.next_goal(PLAN, 2).history.said == "Next I will bring you the apple."

@@ -321,7 +321,13 @@ def test_a_planner_without_a_plan_is_quoted_at_once() -> None:
     bench = asked("sing", enable_confirmation=False)
     answer_plan(bench, 1, [], detail="I cannot sing")
     assert bench.state.state == "ERROR"
-    assert bench.texts(SPEECH)[-1] == "say I cannot do that: I cannot sing."
+    assert bench.texts(SPEECH)[-1] == "say I cannot sing."
+
+
+def test_a_reason_that_is_no_sentence_says_what_it_is_a_reason_for() -> None:
+    bench = asked("put it down", enable_confirmation=False)
+    answer_plan(bench, 1, [], detail="there is nothing in my hand")
+    assert bench.texts(SPEECH)[-1] == "say I cannot do that: there is nothing in my hand."
 
 
 def test_search_turns_then_looks_from_elsewhere() -> None:

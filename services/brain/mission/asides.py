@@ -7,9 +7,14 @@ import msgspec
 
 from common import messages as m
 from common import topics
+from common.language.indirect import indirect
 from common.language.meaning import asks_for
+from common.language.normalise import DETERMINERS
+from common.language.wording import COURTESIES
+from services.brain.language.dialogue import by_wording
 from services.brain.language.interjection import Interjection, interjection
 from services.brain.mission.context import Context
+from services.brain.mission.voice import refused
 
 MAX_QUEUED = 5
 """Commands that wait (chosen: more nobody remembers)."""
@@ -37,7 +42,7 @@ class Asides:
 
     def hear(self, command: m.VoiceCommand) -> Interjection | None:
         """Take what was said while a mission is under way; an interjection that has to interrupt it is given back."""
-        if asks_for(command.text, "yes", "no", "continue", "thanks"):
+        if asks_for(command.text, "yes", "no", "continue", *COURTESIES):
             return None
         said = interjection(command.text, self._ctx.mission.command)
         match said.kind:
@@ -87,7 +92,7 @@ class Asides:
         elif plan.steps:
             self.speak(" ".join(s.text for s in plan.steps))
         else:
-            self.speak(f"I cannot answer that: {plan.detail or 'I do not understand it'}.")
+            self.speak(refused("answer", plan.detail or "I do not understand it"))
         return True
 
     def _weighed(self, command: m.VoiceCommand | None, plan: m.ActionPlan) -> None:
@@ -114,4 +119,15 @@ class Asides:
             self.speak(f"I have {len(queued)} more things to do already. Please tell me again later.")
             return
         queued.append(msgspec.structs.replace(command, text=text, alternatives=[]))
-        self.speak(f"I will do that next: {text}." if len(queued) == 1 else f"I will do that later: {text}.")
+        when, turned = "next" if len(queued) == 1 else "later", indirect(text)
+        self.speak(f"{when.capitalize()} I will {turned}." if turned else f"I will do that {when}: {text}.")
+
+    def replaced(self, text: str) -> None:
+        """Say what is done instead of what was under way."""
+        thing = by_wording(text)[1]
+        if turned := indirect(text):
+            self.speak(f"All right, I will {turned} instead.")
+        elif thing.split()[:1] and thing.split()[0] in DETERMINERS:
+            self.speak(f"All right, {thing} instead.")
+        else:
+            self.speak("All right, that instead.")

@@ -50,3 +50,8 @@ class Offers:
         """A command of this id that comes later is not heard."""
         if command_id not in self._settled:
             self._settled.append(command_id)
+
+
+def refused(verb: str, reason: str) -> str:
+    """`I cannot do that: my hand is full.`; a reason that speaks of the robot itself is the whole sentence."""
+    return f"{reason}." if reason.startswith("I ") else f"I cannot {verb} that: {reason}."

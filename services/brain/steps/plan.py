@@ -13,6 +13,7 @@ from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
+from services.brain.mission.voice import refused
 from services.brain.steps.begin import take_command
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.verify import with_care
@@ -79,7 +80,7 @@ class RequestPlan(SendGoal):
         reason = str(wrong)
         self.feedback_message = reason
         code = "REJECTED" if plan.steps else "NO_PLAN"
-        return self.fail_with(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))
+        return self.fail_with(Failure("PLANNING", code, reason, spoken=refused("do", reason)))
 
 
 class ChooseTranscription(RequestPlan):

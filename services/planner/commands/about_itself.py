@@ -1,7 +1,9 @@
 """What the robot says about itself: what it does, did and can do, and why something failed. Pure."""
 
+from common.language.indirect import indirect
 from common.language.normalise import enumeration
 from common.language.pattern import Slots
+from services.planner.commands.telling import capital
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.reference.resolve import referents
 
@@ -13,18 +15,25 @@ ABILITIES = (
     " things on. Say stop at any time."
 )
 
+_STEPS = {
+    "plan:": "working out how", "look for": "looking for the {}", "look around": "looking around",
+    "look closer at": "looking at the {} from nearer", "search:": "looking around", "approach": "on my way to the {}",
+    "find": "on my way to the {}", "goto": "on my way to the {}", "return_to_start": "on my way back",
+    "grab": "picking it up", "place": "putting it down", "release": "letting go of it", "check": "checking the {}",
+}  # fmt: skip
+"""What is done at the moment, by the beginning of a step that the brain shows."""
+
 
 def doing(builder: PlanBuilder, slots: Slots) -> None:
     """The command under way, and what is done for it at the moment."""
     told, held = builder.world.history, builder.world.held
     if not told.doing:
         hand = f", with the {held.label} in my hand" if held else ""
-        builder.say(f"I am doing nothing at the moment{hand}. I am waiting for a command.")
+        builder.say(f"I have nothing to do at the moment{hand}.")
         if told.last is not None:
             done(builder, slots)
         return
-    now = f" At the moment: {told.step}." if told.step else ""
-    builder.say(f'I am busy with "{told.doing}".{now}')
+    builder.say(f"{_asked(told.doing)}.{_at_present(told.step)}")
 
 
 def done(builder: PlanBuilder, slots: Slots) -> None:
@@ -41,7 +50,7 @@ def done(builder: PlanBuilder, slots: Slots) -> None:
         "failed": f"but I did not manage it. {last.spoken or last.reason}".rstrip(". "),
         "cancelled": "and that was called off",
     }[last.outcome]
-    builder.say(f'My last command was "{last.command}", {came_of_it}.')
+    builder.say(f"{_asked(last.command)}, {came_of_it}.")
 
 
 def why(builder: PlanBuilder, slots: Slots) -> None:
@@ -51,10 +60,26 @@ def why(builder: PlanBuilder, slots: Slots) -> None:
         doing(builder, slots)
         return
     if last is None or last.outcome == "delivered":
-        builder.say("Nothing has failed." if last is None else f'Nothing has failed: I have done "{last.command}".')
+        builder.say("Nothing has failed.")
+        if last is not None:
+            done(builder, slots)
         return
     reason = (last.spoken or last.reason or "I do not know why").rstrip(". ")
-    builder.say(f'You asked me: "{last.command}". {reason[:1].upper()}{reason[1:]}.')
+    builder.say(f"{_asked(last.command)}. {capital(reason)}.")
+
+
+def _asked(command: str) -> str:
+    """`You asked me to bring you the mug`; what cannot be turned is quoted."""
+    turned = indirect(command)
+    return f"You asked me to {turned}" if turned else f'You said "{command}"'
+
+
+def _at_present(step: str) -> str:
+    """` Right now I am looking for the mug.` of a step as the brain shows it; "" of one that people do not know."""
+    for shown, spoken in _STEPS.items():
+        if step == shown or step.startswith(f"{shown} "):
+            return f" Right now I am {spoken.format(step[len(shown) + 1 :])}."
+    return ""
 
 
 def origin(builder: PlanBuilder, slots: Slots) -> None:
@@ -103,3 +128,11 @@ def rooms(builder: PlanBuilder, slots: Slots) -> None:
 
 def thanks(builder: PlanBuilder, slots: Slots) -> None:
     builder.say("You are welcome.")
+
+
+def greeting(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("Hello. What can I do for you?")
+
+
+def parting(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("Goodbye.")

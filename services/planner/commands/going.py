@@ -2,15 +2,21 @@
 
 import re
 
-from common.language.normalise import Words
+from common.language.normalise import DETERMINERS, Words
 from common.language.pattern import Slots
 from common.language.quantities import LONGEST, duration, number
+from services.planner.commands.telling import capital
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.resolve import referent, referents
 
+_GREETED = re.compile(
+    r"^(?P<words>hello|hi|good (?:morning|afternoon|evening|night)|goodbye|bye|sorry|thank you|thanks) "
+    r"to (?P<whom>\w.*)$"
+)
+"""`hello to anna`: whom a courtesy is for is spoken to."""
 _MANNER = re.compile(
     r"^(?:(?:loudly|softly|quietly|clearly|aloud|out loud) |the words? (?=\w))+"
     r"| (?:(?:out )?loud|aloud|loudly|softly|for me|in (?:your|a) (?:\w+ )?voice)$"
@@ -59,7 +65,7 @@ def count(builder: PlanBuilder, slots: Slots) -> None:
 def _wait(builder: PlanBuilder, said: Words) -> None:
     seconds = duration(said) if said else 0.0
     if seconds is None:
-        raise Lost(f"I do not understand how long {' '.join(said)!r} is")
+        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(said)!r}")
     if seconds > LONGEST:
         raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
     builder.wait(seconds)
@@ -85,4 +91,7 @@ def say(builder: PlanBuilder, slots: Slots) -> None:
     if "spot" in slots:
         go(builder, slots)
     text = _MANNER.sub("", " ".join(slots["words"]))
-    builder.say(f"{text[0].upper()}{text[1:]}.")
+    if greeted := _GREETED.match(text):
+        named = greeted["whom"].split()[0] not in DETERMINERS
+        text = f"{greeted['words']}, {greeted['whom'].title()}" if named else greeted["words"]
+    builder.say(f"{capital(text)}.")

@@ -96,6 +96,8 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "rooms": about_itself.rooms,
     "repeat": about_itself.repeat,
     "thanks": about_itself.thanks,
+    "greeting": about_itself.greeting,
+    "parting": about_itself.parting,
 }
 
 

@@ -5,13 +5,16 @@ from collections.abc import Sequence
 from common.language.breaks import is_statement
 from common.language.discourse import commands
 from common.language.lexicon import COMMANDING
+from common.language.meaning import asks_for
 from common.language.normalise import Words
+from common.language.wording import COURTESIES
 from common.messages import PlanStep
 from services.planner.commands import answers
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.mention import expected, note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
+from services.planner.grammar.rules import ACTIONS
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 
 MAX_CHARACTERS = 2000
@@ -55,6 +58,9 @@ def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
     Raises:
         Refusal: a clause is not understood or cannot be done.
     """
+    if courtesy := asks_for(command, *COURTESIES):
+        ACTIONS[courtesy](builder, {})
+        return builder.steps
     sentences = _sentences(command, builder)
     first = read(tuple(sentences[0].split()), builder.vocabulary)
     names = len(sentences) > 1 and isinstance(first, Phrase) and not first.sense.new

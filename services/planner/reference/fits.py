@@ -81,6 +81,8 @@ def unknown(builder: PlanBuilder, words: Words, noun: str) -> Refusal:
     if furniture := builder.vocabulary.furniture(words):
         return Refusal(f"I cannot pick up the {noun or furniture}")
     by_looks = known is not None and front[:1] and front[0] in builder.vocabulary.colours
-    if builder.vocabulary.spot(words) and not by_looks:
+    if (spots := builder.vocabulary.spot(words)) and not by_looks:
+        if spots[0].home:  # `bring me`
+            return Lost("I did not hear which thing you mean")
         return Refusal(f"I cannot pick up the {noun}")
     return Lost(f"I know no {noun}" if noun else "I did not hear which thing you mean")
