@@ -44,9 +44,9 @@ FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 class Commands(argparse._SubParsersAction):  # type: ignore[type-arg]
     """Commands whose own help begins with the line that the list of all commands has."""
 
-    def add_parser(self, name: str, *, help: str, **more: Any) -> argparse.ArgumentParser:
-        described = {"description": f"{help[0].upper()}{help[1:]}."} | more
-        return super().add_parser(name, help=help, **described)
+    def add_parser(self, name: str, **more: Any) -> Any:
+        what = more["help"]
+        return super().add_parser(name, **{"description": f"{what[0].upper()}{what[1:]}.", **more})
 
 
 class Parser(argparse.ArgumentParser):
