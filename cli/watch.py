@@ -21,7 +21,7 @@ from cli.link import Link, Watch, linked, robot_command
 from common import messages as m
 from common import topics
 from common.mission_log.states import limb_words
-from common.mission_log.transcript import Transcript
+from common.mission_log.transcript import PEOPLE, Transcript
 from common.process.health_records import HealthRecords
 from common.time.clock import monotonic
 from common.topic import Topic
@@ -131,7 +131,7 @@ def tree(snapshot: m.TreeSnapshot | None) -> Tree | Text:
 
 def services(picture: Picture) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
-    for n, name in enumerate(("", "service", "restarts", "Hz", "MB", "drops", "up s")):
+    for n, name in enumerate(("", "service", "died", "Hz", "MB", "drops", "up s")):
         table.add_column(name, justify="right" if n > 1 else "left", no_wrap=True)
     rows = {row.name: row for row in picture.health.rows(lambda name: name in picture.alive)}
     for name in sorted(rows.keys() | picture.alive):
@@ -151,10 +151,13 @@ def drawn(picture: Picture) -> Layout:
     """The whole screen: mission, tree, speech, services."""
     talk = Text()
     for line in list(picture.said.lines)[-LINES:]:
-        heard = line.who == "heard"
-        talk.append("heard: " if heard else "robot: ", style=FAINT if heard else "blue").append(f"{line.text}\n")
+        people = line.who in PEOPLE
+        talk.append(f"{line.who}: " if people else "robot: ", style=FAINT if people else "blue").append(
+            f"{line.text}\n"
+        )
     layout = Layout()
-    layout.split_row(Layout(name="left"), Layout(name="right"))
+    # 80 columns are enough for the table of services.
+    layout.split_row(Layout(name="left", ratio=4), Layout(name="right", ratio=5))
     layout["left"].split_column(
         Layout(Panel(mission(picture), title="mission"), ratio=3), Layout(Panel(talk, title="speech"), ratio=2)
     )

@@ -31,7 +31,7 @@ VOICE_COMMAND = goal(
     "voice_command",
     m.VoiceCommand,
     by="speech dashboard ros2 foxglove *",
-    to="brain",
+    to="brain dashboard",
     text="text",
     latched=False,
 )

@@ -4,15 +4,17 @@ import uuid
 from collections.abc import Callable
 
 from cli.errors import CliError
-from cli.link import Link, Watch
+from cli.link import FIRST, Link, Watch
 from cli.missions.audio import Player
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic
 
-ACCEPT, KEPT, HEAR, LISTEN = 5.0, 30.0, 60.0, 90.0
-"""Times [s] for a busy brain to refuse a command, for a free one to take it up, for sound to be understood, and until
-the robot listens."""
+ACCEPT, KEPT, HEAR, LISTEN = 12.0, 30.0, 60.0, 90.0
+"""Times [s] for a busy brain to answer (a question is given up after 10 s), for a free one to take a command up, for
+sound to be understood, and until the robot listens."""
+INSTEAD = 2.0
+"""Time [s] for a mission to begin that takes another one's place, after that was said."""
 Show = Callable[[m.BrainState], None]
 
 
@@ -116,6 +118,25 @@ class Conversation:
                 raise CliError(f"no outcome after {timeout:.0f} s; the robot is {self.state.state}")
             self.refresh()
             idle()
+
+
+class Answer:
+    """What a robot at work says to what is said to it, or that its mission has ended because of that."""
+
+    def __init__(self, link: Link, talk: Conversation) -> None:
+        self._talk, self._under_way = talk, talk.state.mission_id
+        self._goals = Watch(link, topics.SPEECH_GOAL)
+        self._goals.next(FIRST)
+        self.text = ""
+
+    def given(self) -> str:
+        """The answer so far; "" before there is one."""
+        goal, last = self._goals.next(0.0), self._talk.state.last
+        if goal is not None and goal.goal.startswith("say "):
+            self.text = f"robot: {goal.goal[4:]}"
+        elif last is not None and last.id == self._under_way:
+            self.text = f"{last.outcome}: {last.command}"
+        return self.text
 
 
 def typed(text: str, source: str) -> m.VoiceCommand:

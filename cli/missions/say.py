@@ -9,7 +9,7 @@ import msgspec
 from cli.errors import CliError, checked
 from cli.link import Watch, linked, robot_command
 from cli.missions.audio import recorded
-from cli.missions.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
+from cli.missions.conversation import ACCEPT, INSTEAD, KEPT, Answer, Conversation, Show, speak_into, typed
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic
@@ -19,6 +19,7 @@ def say(args: argparse.Namespace) -> int:
     if (args.wav is None) == (not args.text):
         raise CliError('say what? `tidybot say "bring me the red mug"` or `tidybot say --wav FILE`')
     chunks = recorded(args.wav) if args.wav else []
+    said = ""
     with linked(args) as link:
         talk = Conversation(link, _shower(args))
         if talk.state.state == "CONFIRMING":
@@ -27,27 +28,40 @@ def say(args: argparse.Namespace) -> int:
             talk.require_open()
             mission_id, why = speak_into(link, talk, chunks)
         else:
-            text = " ".join(args.text)
+            text, why = " ".join(args.text), talk.closed()
+            answer = Answer(link, talk) if why else None
             link.send(topics.VOICE_COMMAND, typed(text, "cli"))
-            why = talk.closed()
             # While it still reports on the last mission it keeps the command for after that.
-            mission_id = talk.accepted(ACCEPT if why else KEPT)
-            why = "" if mission_id else why or "the brain started no mission from it"
-        record: dict[str, object] = {"accepted": bool(mission_id), "mission_id": mission_id}
-        if not mission_id:
+            mission_id = talk.accepted(ACCEPT, answer.given) if answer else talk.accepted(KEPT)
+            if answer and answer.text:
+                said, mission_id = answer.text, mission_id or talk.accepted(INSTEAD)
+            why = "" if mission_id or said else why or "the brain started no mission from it"
+        record: dict[str, object] = {"accepted": bool(mission_id or said), "mission_id": mission_id}
+        if said:
+            record["said"] = said
+        if not (mission_id or said):
             record["reason"] = why
         outcome = talk.outcome(args.timeout) if mission_id and args.wait else None
     if outcome is not None:
         record |= {"outcome": outcome.outcome, "reason": outcome.reason}
     if args.json:
         print(msgspec.json.encode(record).decode())
-    elif outcome is not None:
-        print(f"{outcome.outcome}{': ' + outcome.reason if outcome.reason else ''}")
     else:
-        print(f"mission {mission_id}" if mission_id else f"not accepted: {why}")
-    if not mission_id or (outcome is not None and outcome.outcome != "delivered"):
+        _print_said(said, mission_id, why, outcome)
+    if not (mission_id or said) or (outcome is not None and outcome.outcome != "delivered"):
         return 1
     return 0
+
+
+def _print_said(said: str, mission_id: str, why: str, outcome: m.MissionOutcome | None) -> None:
+    if said:
+        print(said)
+    if outcome is not None:
+        print(f"{outcome.outcome}{': ' + outcome.reason if outcome.reason else ''}")
+    elif mission_id:
+        print(f"mission {mission_id}")
+    elif not said:
+        print(f"not accepted: {why}")
 
 
 def _shower(args: argparse.Namespace) -> Show:
@@ -106,11 +120,12 @@ def status(args: argparse.Namespace) -> int:
 
 def _print_status(record: dict[str, object]) -> None:
     detail = f"  {record['detail']}" if record["detail"] else ""
-    print(f"state    {record['state']} ({record['system_status'] or 'no system status'}){detail}")
-    for word in ("mission", "last"):
+    print(f"state    {record['state']}{detail}")
+    for word, key in (("mission", "step"), ("last", "outcome")):
         value = record[word]
         if isinstance(value, dict):
-            print(f"{word:8} " + "  ".join(f"{k}: {v}" for k, v in value.items() if v != ""))
+            more = f" ({value['reason']})" if value.get("reason") else ""
+            print(f"{word:8} {value['id']}: {value['command']}: {value[key] or 'begins'}{more}")
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -10,6 +10,9 @@ LINES = 60
 REPEATED = 2.0
 """Time [s] within which the same words of the same speaker are one line: a command comes by two topics."""
 
+PEOPLE = ("heard", "typed")
+"""Whose words those of people are."""
+
 
 @dataclass(frozen=True)
 class Line:
@@ -32,7 +35,8 @@ class Transcript:
         text = text.strip()
         if not text:
             return
-        if any(line.text == text and line.who == who and t - line.t < REPEATED for line in self.lines):
+        same = PEOPLE if who in PEOPLE else (who,)
+        if any(line.text == text and line.who in same and t - line.t < REPEATED for line in self.lines):
             return
         self.lines.append(Line(t, who, text))
         self.changed = True
@@ -54,4 +58,4 @@ class Transcript:
 
     def add_command(self, t: float, command: m.VoiceCommand) -> None:
         """Append a command that came to the brain at `t` [s], from whomever."""
-        self.add(t, "heard", command.text)
+        self.add(t, "typed" if command.confirmed else "heard", command.text)

@@ -190,7 +190,7 @@ class BrainService:
             elif command.question:
                 self._receive_question(command)
             elif ctx.mission.active and asked:
-                self._interrupt(f"asked to {words}")
+                self._interrupt("asked to come back" if asked == "come_back" else f"called off: {words}")
                 ctx.voice.command = command if asked == "come_back" else None
             elif asked in ("stop", "cancel"):
                 ctx.voice.command = None
@@ -239,8 +239,7 @@ class BrainService:
             self.tree.stop(Status.INVALID)
             ctx.mission.failure = Failure(ctx.state, "CANCELLED", reason)
             ctx.mission.queued.clear()
-            held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
-            ctx.end_mission("cancelled", f"{reason}; holding the {held}" if held else reason)
+            ctx.end_mission("cancelled", reason + ctx.gripper.note)
         else:
             ctx.cancel_speech()
             self.tree.stop(Status.INVALID)

@@ -110,6 +110,8 @@ class DashboardService:
             self._transcript.add_goal(t, goal)
         for result in io.take_all(topics.SPEECH_RESULT):
             self._transcript.add_result(t, result)
+        for said in io.take_all(topics.VOICE_COMMAND):
+            self._transcript.add_command(t, said)
         for taught in io.take_all(topics.TAUGHT):
             self._commands.taught(taught, t)
         for edited in io.take_all(topics.HOUSEHOLD_EDITED):

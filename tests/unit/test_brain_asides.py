@@ -95,6 +95,13 @@ def test_a_thing_instead_is_named_as_a_thing(said: str, answer: str) -> None:
     assert bench.texts(SPEECH)[-1] == f"say All right, {answer}"
 
 
+def test_what_was_called_off_says_by_which_words() -> None:
+    bench = planned()
+    hear(bench, "never mind")
+    assert bench.state.last is not None
+    assert (bench.state.last.outcome, bench.state.last.reason) == ("cancelled", "called off: never mind")
+
+
 def test_yes_and_thanks_change_nothing() -> None:
     bench = planned()
     for text in ("yes", "thank you", "good job"):

@@ -358,7 +358,7 @@ def test_robot_stop_cancels_and_waits_for_resume() -> None:
     assert bench.state.state == "IDLE"
     last = bench.state.last
     assert last is not None
-    assert (last.outcome, last.reason) == ("cancelled", "stopped: button; holding the red mug")
+    assert (last.outcome, last.reason) == ("cancelled", "stopped: button; still holding the red mug")
     bench.send(topics.ROBOT_RESUME, m.RobotResume())
     bench.until(lambda: bench.state.state == "LISTENING", limit=5.0)
 

@@ -98,7 +98,9 @@ def test_a_journal_of_a_version_with_other_nodes_is_refused_in_words(pipeline: s
     world.start_brain()
     world.until(lambda: world.outcome == "failed")
     assert world.state.last is not None and world.state.last.code == "OLD_JOURNAL"
-    assert world.state.last.reason.endswith("another version of the brain wrote the journal); holding the red mug")
+    assert world.state.last.reason.endswith(
+        "another version of the brain wrote the journal); still holding the red mug"
+    )
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
@@ -234,7 +236,7 @@ def test_an_orderly_end_ends_the_mission(tmp_path: Path) -> None:
     world.end_brain()
     world.start_brain()
     world.step(10.0)
-    assert world.outcome == "cancelled" and "shut down); holding the red mug" in world.state.last.reason  # type: ignore[union-attr]
+    assert world.outcome == "cancelled" and "shut down); still holding the red mug" in world.state.last.reason  # type: ignore[union-attr]
     assert world.held and world.state.state == "LISTENING"
 
 

@@ -1,9 +1,17 @@
 """What `tidybot missions` and `tidybot explain` print of a record."""
 
+import contextlib
 from typing import Any
 
+import pytest
+
+from cli import main
+from cli.link import Watch
 from cli.missions.explain import WIDTH, told
 from cli.missions.journal import listed
+from common import messages as m
+from common import topics
+from common.topic import Topic
 
 RECORD: dict[str, Any] = {
     "id": "mission-1", "command": "bring me the red mug", "started": 10.0, "outcome": "failed",
@@ -43,3 +51,45 @@ def test_missions_are_one_line_each() -> None:
     assert first.index("failed") == second.index("delivered")
     assert "65.5 s" in first and first.endswith("bring me the red mug  (NO_WAY: blocked)")
     assert listed([]) == ""
+
+
+class AtWork:
+    """A link to a robot that is bringing the mug; what it sends after a command is `then`, by topic."""
+
+    def __init__(self, then: dict[str, list[m.Message]]) -> None:
+        self.then, self.now = then, {topics.BRAIN_STATE.key: [AT_WORK]}
+
+    def send(self, topic: Topic[Any], message: m.Message) -> None:
+        self.now = {key: list(messages) for key, messages in self.then.items()}
+
+    def next(self, topic: Topic[Any]) -> m.Message | None:
+        waiting = self.now.get(topic.key) or [None]
+        return waiting.pop(0)
+
+
+AT_WORK = m.BrainState(state="NAVIGATING", mission_id="m1", command="bring me the mug")
+OFF = m.MissionOutcome(id="m1", command="bring me the mug", outcome="cancelled")
+NEW = m.BrainState(state="PLANNING", mission_id="m2", command="the blue one", last=OFF)
+SAID = m.SpeechGoal(goal="say You asked me to bring you the mug.")
+
+
+@pytest.mark.parametrize(
+    ("then", "printed"),
+    [
+        ({"brain/speech_goal": [SAID]}, "robot: You asked me to bring you the mug."),
+        ({"brain/state": [m.BrainState(state="WAITING", last=OFF)]}, "cancelled: bring me the mug"),
+        ({"brain/speech_goal": [SAID], "brain/state": [NEW]}, "mission m2"),
+    ],
+)
+def test_what_is_said_to_a_robot_at_work_is_answered(
+    then: dict[str, list[m.Message]],
+    printed: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    robot = AtWork(then)
+    monkeypatch.setattr("cli.missions.say.linked", lambda args: contextlib.nullcontext(robot))
+    monkeypatch.setattr(Watch, "__init__", lambda self, link, topic: setattr(self, "_topic", topic))
+    monkeypatch.setattr(Watch, "next", lambda self, timeout: robot.next(self._topic))
+    assert main.main(["say", "what", "are", "you", "doing"]) == 0
+    assert printed in capsys.readouterr().out.splitlines()

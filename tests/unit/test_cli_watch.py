@@ -88,7 +88,12 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
 
 def test_it_fits_a_narrow_terminal(picture: watch.Picture) -> None:
     picture.alive = {"manipulation"}
-    assert max(len(line) for line in text(picture, 80).splitlines()) <= 80
+    busy = m.Health(name="manipulation", epoch="a", t=9.0, uptime=99999.0, hz=100.0, drops=12345, rss_mb=999.0, pid=1)
+    picture.health.take(busy)
+    shown = text(picture, 80)
+    assert max(len(line) for line in shown.splitlines()) <= 80
+    for words in ("manipulation", "died", "drops", "up s", " 100 999 12345 99999"):
+        assert words in shown, words
 
 
 def test_keys() -> None:

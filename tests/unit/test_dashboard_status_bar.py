@@ -7,6 +7,7 @@ import msgspec
 import pytest
 
 from common import messages as m
+from common.language.offers import which
 from common.mission_log.states import under_way
 from services.dashboard.panels import markup
 from services.dashboard.panels.markup import resumable, status_bar
@@ -45,7 +46,13 @@ def test_between_missions_the_last_one_is_told(last: m.MissionOutcome) -> None:
 def test_the_question_is_told_once() -> None:
     shown = status_bar(state("CONFIRMING", "m-2", step="Did you say fetch the can?"), None, 12.0)
     assert (shown["asking"], shown["question"]) == (True, "Did you say fetch the can?")
-    assert shown["mission"] == {"command": "fetch the can", "step": "", "seconds": 2}
+    assert shown["mission"] == {"command": "fetch the can", "step": "", "seconds": 2} and shown["offered"] == []
+
+
+@pytest.mark.parametrize("names", [["red mug", "blue mug"], ["red mug", "blue mug", "mug on the desk"]])
+def test_a_question_between_things_offers_them(names: list[str]) -> None:
+    shown = status_bar(state("CONFIRMING", "m-2", step=which(names)), None, 12.0)
+    assert shown["offered"] == [f"the {name}" for name in names]
 
 
 def test_what_is_not_known_is_empty() -> None:

@@ -181,6 +181,12 @@ class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
     put_down: dict[str, float] = {}
     taken_from: dict[str, str] = {}
 
+    @property
+    def note(self) -> str:
+        """What to add to the reason of an end: what is, or may be, in the hand."""
+        held = self.holding or self.grasp_uncertain
+        return f"; {'still' if self.holding else 'perhaps'} holding the {held}" if held else ""
+
     def mark_grasped(self, label: str, origin: str = "") -> None:
         """Believe that `label` is in the hand; it stood on `origin`, "" if nobody knows."""
         self.taken_from.pop(label, None)

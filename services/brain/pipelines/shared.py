@@ -38,10 +38,7 @@ def enter_error(ctx: Context) -> None:
     mission = ctx.mission
     failure = mission.failure or Failure(ctx.state, "INTERNAL", spoken="Something went wrong.")
     mission.failure = failure
-    reason = failure.reason
-    if ctx.gripper.holding or ctx.gripper.grasp_uncertain:
-        sure = "still" if ctx.gripper.holding else "perhaps"
-        reason += f"; {sure} holding the {ctx.gripper.holding or ctx.gripper.grasp_uncertain}"
+    reason = failure.reason + ctx.gripper.note
     if failure.stage == "CONFIRMING" and failure.code == "CANCELLED":
         ctx.end_mission("cancelled", reason)
     else:

@@ -136,8 +136,7 @@ class Resumption:
         ctx = self._ctx
         ctx.mission.failure = failure
         self._call_off()
-        held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
-        reason = failure.reason + (f"; holding the {held}" if held else "")
+        reason = failure.reason + ctx.gripper.note
         ctx.end_mission("cancelled" if failure.code == "CANCELLED" else "failed", reason)
 
 

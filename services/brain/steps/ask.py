@@ -7,6 +7,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.language import offers
 from common.topic import Topic
 from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply, answered, corrected, reply
@@ -212,5 +213,4 @@ def question(ctx: Context) -> str:
 
 def which(ctx: Context) -> str:
     """The question between several things."""
-    *some, last = [f"the {name}" for name in ctx.mission.search.options]
-    return f"Do you mean {', '.join(some)} or {last}?"
+    return offers.which(ctx.mission.search.options)

@@ -9,6 +9,7 @@ from jinja2 import Environment
 
 from common import messages as m
 from common.html.environment import environment
+from common.language.offers import offered
 from common.mission_log.states import limb_words, under_way
 from common.mission_log.transcript import Line
 from common.process.health_records import ServiceRow
@@ -123,6 +124,7 @@ def status_bar(state: m.BrainState | None, sim: m.SimStatus | None, t: float) ->
         "last": state.last if state is not None and not busy else None,
         "asking": asking,
         "question": state.step if state is not None and asking else "",
+        "offered": offered(state.step) if state is not None and asking else [],
         "stopped": sim is not None and sim.state == "stopped",
         "left": resumable(state),
     }

@@ -53,10 +53,24 @@ function show(s) {
   $("resume").textContent = s.left ? "Release only" : "Release";
   $("resume").title = "Release the brake; nothing is gone on with";
   $("ask").hidden = !s.asking;
-  $("question").textContent = s.question || "Is that right?";
+  offer(s.question || "Is that right?", s.offered);
   $("talk").classList.toggle("on", s.listening);
   if (!s.sim) link("no simulation or robot", false);
   else if (live.readyState === WebSocket.OPEN) link("connected", false);
+}
+
+// A question between things has a button for each of them instead of a yes.
+function offer(question, offered) {
+  if ($("question").textContent === question) return;
+  $("question").textContent = question;
+  $("yes").hidden = offered.length > 0;
+  $("no").textContent = offered.length ? "None" : "No";
+  $("offered").replaceChildren(...offered.map((name) => {
+    const button = document.createElement("button");
+    button.textContent = name;
+    button.onclick = () => act("say", name);
+    return button;
+  }));
 }
 
 $("stop").onclick = () => act("stop");
