@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 
 from cli.errors import CliError, near
 from common.bus.session import BusError
+from common.config import ConfigError
 
 COMMANDS = {
     "processes.up": ("up",),
@@ -86,7 +87,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _sub_parser(top, words).error(f"unrecognized arguments: {' '.join(rest)}")
     try:
         return int(args.run(args))
-    except (CliError, BusError) as error:
+    except (CliError, BusError, ConfigError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:

@@ -92,8 +92,15 @@ def overrides(environ: Mapping[str, str], settings: Iterable[str]) -> dict[str, 
 
 
 def config_dir(environ: Mapping[str, str] = os.environ) -> Path:
-    """Where the TOML files are: TIDYBOT_CONFIG_DIR or the project's own `config/`."""
-    return Path(environ["TIDYBOT_CONFIG_DIR"]) if environ.get("TIDYBOT_CONFIG_DIR") else DEFAULT_DIR
+    """Where the TOML files are: TIDYBOT_CONFIG_DIR or the project's own `config/`.
+
+    Raises:
+        ConfigError: no such directory, so that every parameter would be the default.
+    """
+    given = environ.get("TIDYBOT_CONFIG_DIR")
+    if given and not Path(given).is_dir():
+        raise ConfigError(f"TIDYBOT_CONFIG_DIR={given}: no such directory")
+    return Path(given) if given else DEFAULT_DIR
 
 
 def state_dir(environ: Mapping[str, str], connect: str, namespace: str) -> Path:

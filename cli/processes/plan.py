@@ -40,6 +40,7 @@ class Plan:
     def __init__(self, args: argparse.Namespace) -> None:
         self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
         check_namespace(self.namespace)
+        config.config_dir()
         self.speed = _speed(args.speed)
         self.services = _selection(args.only, args.without, [n for n in OPTIONAL if getattr(args, n, False)])
         self.keys = certificates(getattr(args, "keys", OFF), self.names, self.namespace)

@@ -5,6 +5,7 @@ import contextlib
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import TypeVar
 
@@ -51,7 +52,7 @@ def interruptible() -> Iterator[None]:
 
 
 def check_free(supervision: Supervision, plan: Plan) -> None:
-    """Check that no run is up in this directory and that the port can be had.
+    """Check that no run is up in this directory, and that the port and the folder for its state can be had.
 
     Raises:
         CliError: says what to do.
@@ -64,6 +65,7 @@ def check_free(supervision: Supervision, plan: Plan) -> None:
             f"port {plan.port} is in use by another program; stop it, or choose another with `--port N` "
             f"(`tidybot doctor` shows who listens)"
         )
+    Path(plan.environ["TIDYBOT_STATE_DIR"]).mkdir(parents=True, exist_ok=True)
     for service in plan.services:
         if not (ROOT / service.module.replace(".", "/") / "__main__.py").exists():
             raise CliError(f"{service.module} is not there; leave it out with `--without {service.name}`")

@@ -74,6 +74,19 @@ def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixtur
     assert "usage" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("variable", "path"), [("TIDYBOT_CONFIG_DIR", "/dev/null/config"), ("TIDYBOT_STATE_DIR", "/dev/null/state")]
+)
+def test_a_folder_that_cannot_be_used_is_said_before_anything_starts(
+    variable: str, path: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TIDYBOT_RUN_DIR", str(tmp_path))
+    monkeypatch.setenv(variable, path)
+    assert main.main(["up", "--only", "router", "--port", str(ports.free_port())]) == 1
+    said = capsys.readouterr()
+    assert path in said.err and said.out == ""
+
+
 def test_the_help_of_a_command_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
     for words, what in ((["teach"], "Give the thing"), (["places", "rename"], "Give a part another name.")):
         with pytest.raises(SystemExit):
