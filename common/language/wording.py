@@ -3,13 +3,12 @@
 from typing import Literal, NamedTuple
 
 Action = Literal[
-    "stop", "cancel", "continue", "yes", "no", "refuse",
+    "stop", "cancel", "continue", "yes", "no", "refuse", "greeting", "parting",
     "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait", "count",
     "wait_there", "come_back", "leave", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "teach_owned", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
-    "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks", "greeting",
-    "parting",
+    "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at", "put_held",
     "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
