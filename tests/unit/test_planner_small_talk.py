@@ -4,6 +4,7 @@ import pytest
 
 from common.language.indirect import indirect
 from common.messages import History, MissionOutcome
+from services.planner.commands.going import utterance
 from tests.everyday import FLAT, planned
 
 
@@ -58,12 +59,21 @@ def test_what_it_did_is_told_as_what_it_was_asked() -> None:
         ("thank you so much", "You are welcome."),
         ("can you hear me", "Yes, I hear you, and I understand English."),
         ("what's next", "I have nothing to do at the moment."),
-        ("say hello to anna", "Hello, Anna."),
-        ("say sorry to my wife", "Sorry."),
-        ("say we have to go", "We have to go."),
         ("give it to me", "I do not understand 'to me'"),
         ("bring me", "I did not hear which thing you mean"),
     ],
 )
 def test_small_talk_is_answered_in_kind(command: str, answer: str) -> None:
     assert said(command) == answer
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("hello to anna", "Hello, Anna."),
+        ("sorry to my wife", "Sorry."),
+        ("we have to go", "We have to go."),
+    ],
+)
+def test_whom_a_courtesy_is_for_is_spoken_to(words: str, sentence: str) -> None:
+    assert utterance(words) == sentence

@@ -90,8 +90,13 @@ def say(builder: PlanBuilder, slots: Slots) -> None:
     """What was said to be said, where it is to be heard."""
     if "spot" in slots:
         go(builder, slots)
-    text = _MANNER.sub("", " ".join(slots["words"]))
+    builder.say(utterance(" ".join(slots["words"])))
+
+
+def utterance(text: str) -> str:
+    """The sentence for `hello to anna`, `aloud the words dinner is ready`."""
+    text = _MANNER.sub("", text)
     if greeted := _GREETED.match(text):
         named = greeted["whom"].split()[0] not in DETERMINERS
         text = f"{greeted['words']}, {greeted['whom'].title()}" if named else greeted["words"]
-    builder.say(f"{capital(text)}.")
+    return f"{capital(text)}."
