@@ -1,7 +1,7 @@
 """What the robot makes of everyday sentences, and whether that is right by the notation of tests/data/sentences.tsv."""
 
 import re
-from itertools import permutations
+from itertools import chain, permutations, product
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -148,7 +148,7 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     if tag not in ("last", "failed"):
         return flat, "", History(said="x")
     done = planned(about, FLAT, "", History(), PLAINLY)
-    label = next((s.object for s in done.steps if s.object), "")
+    label = next((s.object for s in (*done.looks, *done.steps) if s.object), "")
     origin = next((o.on for o in FLAT if o.label == label), "")  # "" of what nobody has listed, and of a rule's things
     if not origin and tag == "last":
         return (
@@ -164,6 +164,16 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
         spoken = f"I could not find the {label}."
         last = MissionOutcome(id="m", command=about, outcome="failed", reason=spoken, spoken=spoken, t=NOW - 5)
         return flat, "", History(last=last, objects=[label] if label else [])
+    last = MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5)
+    actions = [s.action for s in done.steps]
+    if "grasp" not in actions:  # it stands where it was
+        return flat, "", History(last=last, objects=[label])
+    if actions[-1] == "grasp":
+        return (
+            [o for o in flat if o.label != label],
+            label,
+            History(last=last, objects=[label], taken_from={label: origin}),
+        )
     receptacle = HOME.receptacle(target)
     assert receptacle is not None
     x, y, z = receptacle.center
@@ -172,7 +182,6 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
                                                size=o.size, on=receptacle.name, seen_at=NOW - 5)
         for o in flat
     ]  # fmt: skip
-    last = MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5)
     return moved, "", History(last=last, objects=[label], taken_from={label: origin})
 
 
@@ -213,7 +222,7 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
         return "right"
     if sentence.right == "none()" and found.kind in ("cancel", "stop"):
         return "right"
-    if found.asks and _after_a_yes(sentence, found.asks):
+    if found.asks and _after_a_yes(sentence, found):
         return "asked rightly"
     if found.asks or (not acts and not found.kind and re.search(r"which|do you mean", found.reason)):
         return "asked back"
@@ -222,10 +231,11 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
     return "wrong"
 
 
-def _after_a_yes(sentence: Sentence, asked: str) -> bool:
+def _after_a_yes(sentence: Sentence, found: Understood) -> bool:
     """Does what was asked about come to the right plan?"""
     tag, _, about = sentence.context.partition(":")
-    return verdict(sentence, planned(asked, *after(tag, about))) == "right"
+    meant = planned(found.asks, *after(_BEFORE.get(found.kind, tag), about))
+    return verdict(sentence, meant._replace(kind=found.kind)) == "right"
 
 
 def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
@@ -243,43 +253,52 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
         if untold := re.fullmatch(r"norule\(([^)]+)\)", reading):
             return f"no rule about {untold[1]}" in found.reason
         return reading == "refuse()" and not found.kind
-    if tidied := re.fullmatch(r"tidy\(([^)]+)\)", reading):
-        reading = _tidied(tidied[1])
-    elif tidied := re.match(r"tidy\((.+?)\); (.+)", reading):
-        reading = f"{_tidied(tidied[1])}; {tidied[2]}".replace(" & ", "; ")
-    wanted = re.findall(r"(\w+)\(([^)]*)\)", reading)
+    groups = [_wanted(group) for group in reading.split(";")]
+    wanted = tuple(act for group in groups for act in group)
     answers = all(name in ("answer", "say") for name, _ in wanted)
     plans = [[*found.looks, *found.steps], found.steps]
-    orders = permutations(wanted) if "&" in reading else [tuple(wanted)]
     tag, _, about = sentence.context.partition(":")
     held = about if tag == "held" else ""
     done = [_acts(plan, held) for plan in plans]
     done += [_acts(plan, held, looks=False) for plan in ([] if answers else plans)]
-    if "&" in reading and len(wanted) > 4:
-        orders = [_aligned(wanted, acts) for acts in done]
+    if len(wanted) <= _FEW:
+        orders = [tuple(chain(*order)) for order in product(*(permutations(group) for group in groups))]
+    else:
+        orders = [_aligned(groups, acts) for acts in done]
     return any(_same(order, acts) for order in orders for acts in done)
 
 
-def _aligned(wanted: list[tuple[str, str]], acts: list[tuple[str, ...]]) -> tuple[tuple[str, str], ...]:
-    """The wanted acts in the order of what was done, as far as they can be found there."""
-    left, found = list(wanted), []
+_FEW = 4
+"""Most acts whose orders are all tried (chosen: bounds the time)."""
+
+
+def _wanted(group: str) -> list[tuple[str, str]]:
+    """The acts of a reading that may be done in any order, tidying as what is to be moved."""
+    acts = re.findall(r"(\w+)\(([^)]*)\)", group)
+    return [act for name, args in acts for act in (_tidied(args) if name == "tidy" else [(name, args)])]
+
+
+def _aligned(groups: list[list[tuple[str, str]]], acts: list[tuple[str, ...]]) -> tuple[tuple[str, str], ...]:
+    """The wanted acts group by group, in the order of what was done as far as they can be found there."""
+    groups, found = [list(group) for group in groups], []
     for act in acts:
+        left = next(filter(None, groups), [])
         match = next((w for w in left if _same((w,), [act])), None)
         if match is not None:
             left.remove(match)
             found.append(match)
-    return (*found, *left)
+    return (*found, *chain(*groups))
 
 
-def _tidied(surface: str) -> str:
+def _tidied(surface: str) -> list[tuple[str, str]]:
     """Everything on a surface where the rules of the configuration say, worked out without the grammar."""
     moved = []
     for o in (o for o in FLAT if o.on == surface):
         rule = next(r for r in HOME.words.tidy if not r.kinds or o.kind in r.kinds)
         target = next(r for name in rule.to for r in HOME.receptacles if name in (r.name, *r.aliases, r.kind))
         if target.name != surface:
-            moved.append(f"put({o.label}, {target.name})")
-    return " & ".join(moved) if moved else "answer(tidy)"
+            moved.append(("put", f"{o.label}, {target.name}"))
+    return moved or [("answer", "tidy")]
 
 
 def _acts(steps: list[PlanStep], held: str = "", looks: bool = True) -> list[tuple[str, ...]]:

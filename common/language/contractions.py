@@ -98,6 +98,7 @@ _SAME = tuple(
         (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
         (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
          r"devil|exactly|actually)\b", r"\1"),
+        (r"\b(put|place|set|take|bring|carry|move|leave|drop) both (?=(?:to|on|in|into|onto)\b)", r"\1 them "),
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)|\bfor the life of (?:me|us)\b", ""),
         (r"\bto wherever (?=.+ (?:is|are|stands)$)", "to where "),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),

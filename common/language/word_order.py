@@ -150,6 +150,8 @@ def _topic(words: Words) -> Iterator[str]:
             continue
         if not rest or rest[0] in _STARTS - {"that", "this", "those", "these"}:
             continue
+        if rest[0] == "them" and not thing.endswith("s") and "and" not in words[: at - 1]:
+            continue  # "the apple and put them on the desk" is about others, too
         if " ".join(rest[:1]) in ("it", "them", "that", "this", "those", "these"):
             rest = rest[1:]
         receiver = rest[:1] if rest[:1] in (("me",), ("us",)) else ()

@@ -8,7 +8,7 @@ from typing import Literal
 
 from common.language.condition_wordings import CONDITIONS
 from common.language.home_wordings import ASKED, TOLD
-from common.language.lexicon import BACK, BRING, FAMILY, GO, LOOK, ON, PICK, PUT, TIDY
+from common.language.lexicon import BACK, BRING, FAMILY, GO, LOOK, NEAR, ON, PICK, PUT, TIDY
 from common.language.moving import MOVING
 from common.language.questions import ABOUT_ITSELF, ABOUT_THE_WORLD
 from common.language.refusals import REFUSALS
@@ -197,7 +197,7 @@ WORDINGS: tuple[Wording, ...] = (
         " | return [home | here | to (start | me | base)] | (come | go | drive) [back] home",
         heard="go home | come (here | back)",
     ),
-    Wording("put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>"),
+    Wording("put", f"{PICK} <thing> [up] and ({PUT}) it {BACK} {ON} <spot>"),
     Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>"),
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
@@ -218,8 +218,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="drive [back] to [the] <place>",
     ),
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>"),
-    Wording("leave", "(get | go | come) out of <spot> | (vacate | exit) <spot> | leave <spot> | (get | go) (out | "
-                     "away)"),
+    Wording("leave", "(get | go | come) out of <spot> | (vacate | exit | leave) <spot> | (get | go) (out | away)"),
     Wording(
         "go",
         "(approach | look at | head for | make for | set off for) <spot>"
@@ -251,6 +250,7 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     # Names alone.
     Wording("put_held", f"[back] ({ON} | at | to) <spot>", kind="name"),
+    Wording("put_held_near", f"[back] {NEAR} <spot> [again]", kind="name"),
     Wording("named_at", "<thing> (in | on | into | onto) <spot>", kind="name"),
     Wording("fetch", "[no] i (said | meant) <thing> | no (the | my | that | this | "
                      "all) <thing>", heard="no [i said] <thing>", kind="name"),

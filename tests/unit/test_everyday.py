@@ -102,6 +102,25 @@ def test_a_condition_is_looked_into(said: str, acts: list[str]) -> None:
     assert shown[-len(acts) :] == acts
 
 
+@pytest.mark.parametrize(
+    ("context", "said", "right", "verdict_of"),
+    [
+        ("-", "bring me the apple and then tidy up the living table", "fetch(apple); tidy(living table)", "right"),
+        ("-", "bring me the apple and then tidy up the living table", "tidy(living table); fetch(apple)", "wrong"),
+        ("-", "tidy up the desk and then the kitchen table", "tidy(kitchen table) & tidy(desk)", "right"),
+        ("busy:bring me the apple", "once i've got that i'll want the bowl, too", "queue: fetch(yellow bowl)",
+         "asked rightly"),
+        ("last:find the red ball", "bring it to me", "fetch(red ball)", "right"),
+        ("last:take the red ball", "now drop it", "drop()", "right"),
+    ],
+)  # fmt: skip
+def test_the_judge_of_sentences_knows_what_was_done_before(
+    context: str, said: str, right: str, verdict_of: str
+) -> None:
+    sentence = Sentence(context, said, right)
+    assert verdict(sentence, understand(sentence)) == verdict_of
+
+
 def test_the_judge_of_sentences_can_say_no() -> None:
     first = lists()["01"][0]
     assert verdict(first, understand(first)) == "right"

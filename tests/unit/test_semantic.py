@@ -91,7 +91,16 @@ def test_a_plan_that_does_something_else_is_asked_about() -> None:
     assert not is_doubted("bring me the blue mug", "bring me the blue mug", 0.9)
     assert is_doubted("bring me the stapler", "bring me the red mug", 0.6), "nobody knows it"
     assert not is_doubted("bring me the can of paint", "bring me the red can", 0.9), "a part of the name"
-    assert not is_doubted("where is the red mug", "bring me the red mug", 0.9), "words do no harm"
+    assert not is_doubted("where is the red mug", "bring me the red mug", 0.8), "words do no harm"
+    assert is_doubted("where is the red mug", "bring me the red mug", 0.95), "an answer is no help"
+    assert is_doubted("put the red mug on the desk", "mugs always belong on the desk", 0.9), "a rule moves nothing"
+    assert is_doubted("bring me the position 45 seconds", "wait 45 seconds", 0.9), (
+        "the likeliest knows the name as a time"
+    )
+    idle = Guess([], [], answers=False, p=0.9)
+    known = {"red mug"}
+    assert contradicted(tokens("bring me the red mug"), planned("bring me the red mug").steps, idle, known)
+    assert not contradicted(tokens("where is the red mug"), planned("where is the red mug").steps, idle, known)
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,14 @@ def _brought(builder: PlanBuilder, item: BelievedObject) -> bool:
     return over.get(item.label, False)
 
 
+def _not_over(builder: PlanBuilder, labels: set[str]) -> None:
+    """Take back the steps that would only hand these things over: `get the mug, then the can, and put both there`."""
+    actions = [[s.action for s in builder.steps[at : at + 4]] for at in range(len(builder.steps))]
+    for at in reversed(range(len(builder.steps))):
+        if builder.steps[at].object in labels and actions[at] == ["find", "grasp", *_OVER]:
+            del builder.steps[at : at + 4]
+
+
 def deliver(builder: PlanBuilder, slots: Slots) -> None:
     """Take things to a place, a room, a surface or the person."""
     _deliver(builder, referents(builder, slots["thing"], prefer_held=True), spot(builder, slots["spot"]))
@@ -83,6 +91,8 @@ def put(builder: PlanBuilder, slots: Slots) -> None:
     """Put things in or on something that holds things."""
     everything = referents(builder, slots["thing"], prefer_held=True)
     where = _surface(builder, slots)
+    if " ".join(slots["thing"]) in PLURAL_PRONOUNS:
+        _not_over(builder, {m.object.label for m in everything})
     for meant in everything:
         _put(builder, meant, where)
     builder.last = [m.object for m in everything]
@@ -93,6 +103,13 @@ def put_held(builder: PlanBuilder, slots: Slots) -> None:
     if builder.world.held is None:
         raise Lost("there is nothing in my hand")
     deliver(builder, {"thing": ("it",), **slots})
+
+
+def put_held_near(builder: PlanBuilder, slots: Slots) -> None:
+    """`next to the can` to a robot that holds something."""
+    if builder.world.held is None:
+        raise Lost("there is nothing in my hand")
+    put_near(builder, {"thing": ("it",), **slots})
 
 
 def swap(builder: PlanBuilder, slots: Slots) -> None:

@@ -68,6 +68,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "wish_at": bringing.wish_at,
     "named_at": bringing.named_at,
     "put_held": bringing.put_held,
+    "put_held_near": bringing.put_held_near,
     "again": remarks.again,
     "look_around": looking.look_around,
     "go_and_see": looking.go_and_see,

@@ -74,6 +74,8 @@ def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
         if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
             builder.spot = topic[0]  # "the bookshelf. What is there?"
             continue
+        if number and words[0] == "any" and sentences[number - 1].endswith(f" {' '.join(words[1:])}"):
+            continue  # "get me a can. Any can"
         if words[0] == "otherwise":
             if not builder.unmet:
                 break

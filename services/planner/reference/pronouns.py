@@ -23,13 +23,26 @@ def speak_of(builder: PlanBuilder, meant: list[Referent]) -> None:
 
 def pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
     if builder.last:
-        meant = [builder.world.current(t) for t in (builder.last if plural else builder.last[-1:])]
+        spoken = _handled(builder) if plural and len(builder.last) == 1 else builder.last
+        meant = [builder.world.current(t) for t in (spoken if plural else builder.last[-1:])]
         return [Referent(t, *builder.told.get(t.label, ("", None))) for t in meant]
     if held := builder.world.held:
         return [Referent(held)]
     if before := handled_before(builder):
         return [Referent(t) for t in (before if plural else before[-1:])]
     raise Lost("I do not know what you mean by that" if plural else "I do not know what you mean by it")
+
+
+def _handled(builder: PlanBuilder) -> list[BelievedObject]:
+    """The thing spoken of last, behind the others that the plan has handled: `get the mug, get the can, put both ...`.
+
+    Alone where its name is a plural: `my keys, put them there`.
+    """
+    last = builder.last[0].label
+    taken = dict.fromkeys(s.object for s in builder.steps if s.action == "grasp" and s.object)
+    if last.endswith("s") or last not in taken:
+        return builder.last
+    return [BelievedObject(label, "", seen=False) for label in taken]
 
 
 def handled_before(builder: PlanBuilder) -> list[BelievedObject]:

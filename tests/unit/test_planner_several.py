@@ -1,0 +1,46 @@
+"""Several things of one text: what `both` and `them` are, how often one is asked for, what is put beside another."""
+
+import pytest
+
+from tests.everyday import Sentence, planned, understand, verdict
+
+
+@pytest.mark.parametrize(
+    ("said", "right"),
+    [
+        ("get the red mug and then the blue mug and put both on the desk", "put(red mug, desk); put(blue mug, desk)"),
+        ("get the apple, get the blue mug, then put them both on the desk", "put(apple, desk); put(blue mug, desk)"),
+        ("get me a can. any can", "fetch(green can/red can/white can)"),
+        ("bring me a mug, any mug", "fetch(red mug/blue mug/white mug)"),
+    ],
+)
+def test_things_of_a_text_are_done_with_once(said: str, right: str) -> None:
+    assert verdict(Sentence("-", said, right), planned(said)) == "right"
+
+
+@pytest.mark.parametrize(
+    ("context", "said", "right"),
+    [
+        ("held:red can", "next to the apple please", "put(red can, kitchen table near apple)"),
+        ("last:take the red can", "next to the apple please", "put(red can, kitchen table near apple)"),
+        ("-", "next to the apple please", "refuse()"),
+    ],
+)
+def test_what_is_held_is_put_beside_a_thing(context: str, said: str, right: str) -> None:
+    sentence = Sentence(context, said, right)
+    assert verdict(sentence, understand(sentence)) == "right"
+
+
+@pytest.mark.parametrize(
+    ("said", "asked"),
+    [
+        ("remember: all toys belong in the toy box", "toys always belong on the toy box"),
+        ("hold position 45 seconds", "wait 45 seconds"),
+        ("lend me twenty quid", "bring me the twenty quid"),
+        ("will you say night night teddy to him", "say night night teddy"),
+        ("i was wondering whether the blue mug could stand on the desk instead", "put the blue mug on the desk"),
+    ],
+)
+def test_what_most_likely_means_something_else_is_asked_about(said: str, asked: str) -> None:
+    found = planned(said)
+    assert (found.steps, found.asks) == ([], asked)
