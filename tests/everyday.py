@@ -226,7 +226,8 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
         return "asked rightly"
     if found.asks or (not acts and not found.kind and re.search(r"which|do you mean", found.reason)):
         return "asked back"
-    if not acts and not found.kind:
+    heard = not found.kind or f"{found.kind}: " in sentence.right  # a command for later or instead, as it should be
+    if not acts and heard:
         return "wrong" if found.steps and "answer" not in sentence.right else "not understood"
     return "wrong"
 
@@ -242,9 +243,13 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     kind, colon, rest = reading.partition(": ")
     if colon and kind in ("queue", "replace"):
         return found.kind == kind and _fits(rest, sentence, found._replace(kind=""))
+    if reading == "yes()" and sentence.context.startswith("heard:") and found.steps:  # the same in other words
+        return found.steps == planned(sentence.context.removeprefix("heard:"), FLAT, "", History()).steps
     if reading in ("stop()", "pause()", "yes()", "no()"):
         stops = ("stop", "cancel")
-        return found.kind in {"stop()": stops, "pause()": stops, "yes()": ("yes",), "no()": ("no",)}[reading]
+        return found.kind in {"stop()": stops, "pause()": stops, "yes()": ("yes",), "no()": ("no", "cancel")}[reading]
+    if found.looks and found.steps and _left(reading, found):
+        return True
     if choice := re.fullmatch(r"pick\(([^()]+)\)", reading):
         return found.kind in [f"pick {label}" for label in choice[1].split("/")]
     if reading == "return()" and found.kind == "come_back":
@@ -252,7 +257,7 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     if found.kind or not found.steps:
         if untold := re.fullmatch(r"norule\(([^)]+)\)", reading):
             return f"no rule about {untold[1]}" in found.reason
-        return reading == "refuse()" and not found.kind
+        return reading == "refuse()" and found.kind in ("", "queue")
     groups = [_wanted(group) for group in reading.split(";")]
     wanted = tuple(act for group in groups for act in group)
     answers = all(name in ("answer", "say") for name, _ in wanted)
@@ -266,6 +271,19 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     else:
         orders = [_aligned(groups, acts) for acts in done]
     return any(_same(order, acts) for order in orders for acts in done)
+
+
+def _left(reading: str, found: Understood) -> bool:
+    """Was a thing that the flat has not looked for, as a condition asks, and then nothing done?"""
+    absent = {args.split(",")[0] for _, args in re.findall(r"(fetch|put|take)\(([^)]*)\)", reading)} - {
+        o.label for o in FLAT
+    }
+    said = {
+        name
+        for s in found.steps
+        for name in re.findall(r"^I see no (.+?)(?: (?:on|in) the .+)?, so I leave it", s.text)
+    }
+    return bool(said) and said <= absent and all(s.action == "say" for s in found.steps)
 
 
 _FEW = 4

@@ -29,7 +29,8 @@ _PART = re.compile(
     r")?(?:finally|lastly|last|next),?\s+(?!to\b)|,\s*(?:and )?(?=(?:say|announce)\b)"
 )
 _BEHIND_SPEECH = re.compile(
-    rf",\s*(?:and then|and|then)\s+(?={A_VERB}\b)|,?\s+and\s+(?:then\s+)?(?={A_VERB} (?:right |straight )?back\b)"
+    rf",\s*and\s+(?={A_VERB}\b)|,?\s+(?:and\s+)?then\s+(?={A_VERB}\b)"
+    rf"|,?\s+and\s+(?:then\s+)?(?={A_VERB} (?:right |straight )?back\b)"
     r"|,\s*(?=(?:he|she|they) (?:will not|will never|can not|do not|does not|is not|are not|never) \w+)"
 )
 """Between what is to be said and the next command."""

@@ -24,6 +24,11 @@ _SPELLINGS = {
 }  # fmt: skip
 """Spoken spellings of single words."""
 _SPELLED = re.compile(rf"\b(?:{'|'.join(_SPELLINGS)})\b")
+_TELL_NAME = (
+    r"(?:^|(?<= and )|(?<= then )|(?<=, ))tell (?!(?:me|us|you|it|the|my|our|your|his|her|him|them|every\w+|any\w+|"
+    r"people|whoever|who|what|where|how|if|whether|that|this)\b)[a-z]+"
+)
+"""Behind it stands what is to be said to somebody by name."""
 _CONTRACTIONS = tuple(
     (re.compile(short), long)
     for short, long in (
@@ -77,6 +82,12 @@ _CONTRACTIONS = tuple(
         (r"\b(i|you|they|we|he|she|it|that)'d\b", r"\1 would"),
         (r"\bid (?=like|love|appreciate|prefer|be|want|need|rather)", "i would "),
         (r"\blet'?s\b", "let us"),
+        (r"^(please )?go (?:over )?(?:and )?(?=(?:tell|say|inform|announce|wish|let \w+(?: \w+)? know)\b)", r"\1"),
+        (rf"{_TELL_NAME} (?=(?:in|at) (?:the|my|our)\b)", "tell them "),
+        (
+            rf"{_TELL_NAME},? (?!(?:to|where|what|how|if|whether|about|when|why|who|which|in|at|and|not)\b)(?:that )?",
+            "say ",
+        ),
     )
 )
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
@@ -84,11 +95,19 @@ _PREPOSITION = (
     r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
     r"(?:left|right))\b)"
 )
+_CARDINALS = tuple(enumerate(("one", "two", "three", "four", "five", "six"), 1))
 _SAME = tuple(
     (re.compile(words), plain)
     for words, plain in (
         (rf"\b(?:plus|as well as|along with|and also|and additionally|not to mention)\b {_NOUN}", "and "),
         (r"\b(what|which) (?:kinds?|sorts?|types?) of\b", r"\1"),
+        (r"\b(anything|something|nothing) at all\b", r"\1"),
+        *((rf"(?<![\w:.] )(?<![:.])\b{n} (?=[a-z])|(?<=[a-z] ){n} (?=[a-z])", f"{word} ") for n, word in _CARDINALS),
+        (r"\b(?:a few|several) (?!times\b|\w+ ago\b)(?=[a-z]+s\b)(?!seconds\b|minutes\b|hours\b|moments\b)", "some "),
+        (r"(?<=\w),(?= from (?:now|today) on\b)", ""),
+        (r"\b(?:just|right) now\b", "now"),
+        (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside)\b)", "what is "),
+        (r"\b(how many \w+) (?:stand|lie|sit) (?=(?:on|in|at)\b)", r"\1 are "),
         (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
         (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright "
          rf")over) {_PREPOSITION}",

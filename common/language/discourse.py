@@ -75,6 +75,18 @@ _TOP_OF = re.compile(
     r"\b(?P<on>from|off|on|onto) the (?:very )?(?:top|surface|edge|middle|far end) of (?=(?:the|my|our|that) \w)"
 )
 """Where something lies, said with more words: on the bedroom floor, on the cabinet."""
+_KEPT = r"(?:goes?|belongs?|lives?|stays?|puts?|keep|kept|have (?:its|their) (?:place|home)|supposed to be)"
+_NOTED = re.compile(
+    r"^(?:(?:please|and|so|now|no),? )*(?:(?:do )?(?:remember|note)|(?:keep|bear) in mind|just so you know|"
+    r"as a (?:general )?(?:rule|principle)|in (?:general|future)|(?:in|at) (?:this|our) (?:house|flat|home|family))"
+    rf"(?:,? please)?,?(?: that)? (?=(?:\w+ )*?{_KEPT}\b)"
+)
+_NOTED_BEHIND = re.compile(
+    rf"^(?P<said>(?!{A_VERB}\b)(?:[\w']+ )*?{_KEPT}\b[^,.;]*?)[,.;] (?:and |so )?(?:please )?"
+    r"(?:(?:do not forget|remember|note) (?:that|this|it)|remember|(?:keep|bear) (?:that|this|it) in mind)"
+    r"[ ,.!]*(?:please)?$"
+)
+"""A statement of where things belong that is to be kept."""
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
@@ -85,6 +97,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     text = _WHAT_IS_HELD.sub(r"\g<verb>it", text)
     listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
     whole = without_fillers(expand(normalise(listed, ",;.!?")))
+    whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)

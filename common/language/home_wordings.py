@@ -11,7 +11,7 @@ _ALWAYS = (
 _BELONG = (
     "(go | goes | (have | has) (their | its) (place | home) | stay | get put | are to (go | stay) | belong "
     "| belongs | live | lives | "
-    "(should | ought to) (go | be | live | belong) | are kept | are put | are stored"
+    "(should | ought to | are supposed to | is supposed to) (go | be | live | belong) | are kept | are put | are stored"
     " | (should | must | are to) be (kept | stored))"
 )
 _MUST = "(should | must | ought to | have to | are to)"
@@ -36,9 +36,11 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "forget_rule",
-        "(forget | drop | scrap | erase | delete | undo | remove | take back | cancel) [about] (that | the | this | "
-        "my | your) [last | new]"
-        " rule [(about | for | on) <words>]"
+        "(forget | drop | scrap | scratch | erase | delete | undo | remove | take back | cancel | abolish) [about]"
+        " (that | the | this | my | your) [last | new]"
+        " rule [(about | for | on) <words>] | (scrap | scratch | drop | cancel | delete | forget) the <words> rule"
+        " | the rule (about | for | on) <words> is (cancelled | off | over | gone) [now]"
+        " | <words> have no (fixed | set | special) (place | home) [any more | now]"
         " | (i | we) (no longer | do not) (want | need) (that | the | your) rule [(about | for | on) <words>]",
         heard="forget that rule",
     ),

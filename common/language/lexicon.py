@@ -46,6 +46,7 @@ FAMILY = (
     " | daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | granny | gran"
     " | nana | grandad | boy | girl | family | brother | sister)"
 )
+PEOPLE = f"([(my | our | the)] {FAMILY} | them | everybody | everyone | people | anybody | anyone | the others)"
 PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
 """Who wants something."""
 MOVED = "(put | placed | moved | brought | taken | carried | set | returned | transferred | dropped | left)"

@@ -133,7 +133,7 @@ MOVING: tuple[Wording, ...] = (
         " | ((have | take) a look [around | round] | look (around | round)) for <thing>"
         " | (help me | try to) (look for | find | search for | locate) <thing>",
     ),
-    Wording("fetch", f"({FETCH} | get) <thing>"),
+    Wording("get", f"({FETCH} | get) <thing>"),
     Wording("wish_at", f"{PERSON} {WISH} <thing> [to be] {ON} <spot>"),
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),

@@ -9,7 +9,7 @@ Action = Literal[
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "teach_owned", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
-    "recall", "wish_at", "named_at", "put_held", "put_held_near",
+    "recall", "wish_at", "named_at", "get", "put_held", "put_held_near",
     "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
     "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery", "repeat",

@@ -8,7 +8,7 @@ from typing import Literal
 
 from common.language.condition_wordings import CONDITIONS
 from common.language.home_wordings import ASKED, TOLD
-from common.language.lexicon import BACK, BRING, FAMILY, GO, LOOK, NEAR, ON, PICK, PUT, TIDY
+from common.language.lexicon import BACK, BRING, GO, LOOK, NEAR, ON, PEOPLE, PICK, PUT, TIDY
 from common.language.moving import MOVING
 from common.language.questions import ABOUT_ITSELF, ABOUT_THE_WORLD
 from common.language.refusals import REFUSALS
@@ -136,21 +136,15 @@ WORDINGS: tuple[Wording, ...] = (
     # The robot itself.
     Wording(
         "say",
-        f"(tell | inform) ([(my | our | the)] {FAMILY} | them | everybody | everyone | people | whoever is | anybody | "
-        "anyone) (in | at) <spot> [that | to] <words>"
-        f" | let ([(my | our | the)] {FAMILY} | them | everybody | everyone | people | whoever is) know (in "
-        f"| at) <spot> "
-        f"[that] <words> | wish ([(my | our | the)] {FAMILY} | them | everybody | everyone "
-        f"| people) <words> (in | at) <spot>",
+        f"(tell | inform | (say | announce) to) ({PEOPLE} | whoever is) (in | at) <spot> [that | to] <words>"
+        f" | let ({PEOPLE} | whoever is) know (in | at) <spot> [that] <words>"
+        f" | wish {PEOPLE} <words> (in | at) <spot> | say <words> to {PEOPLE} (in | at) <spot>",
     ),
     Wording(
         "say",
-        f"wish ([(my | our | the)] {FAMILY} | them | everybody | everyone | people) <words>"
-        f" | (tell | inform) {FAMILY} [that] <words> | repeat after me [and] <words> |"
-                "(say | announce) [that] <words> | (tell | inform) <thing> that <words>"
-        " | tell (everybody | everyone | people) in <spot> that <words> | (tell | inform)"
-        f" ((my | our | the) {FAMILY} | them | everybody | everyone | people | the others) [that] <words>"
-        f" | let (them | everybody | everyone | people | (my | our | the) {FAMILY}) know [that] <words>",
+        f"(wish | inform | (say | announce) to) {PEOPLE} [that] <words> | tell {PEOPLE} [that] <words>"
+        f" | let {PEOPLE} know [that] <words> | say <words> to {PEOPLE}"
+        " | repeat after me [and] <words> | (say | announce) [that] <words> | (tell | inform) <thing> that <words>",
     ),
     Wording("wait", "(wait | pause | hold [your] position) [here | there | a moment | a bit | a while | for me]",
             heard="wait"),

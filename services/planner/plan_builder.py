@@ -24,7 +24,9 @@ class Refusal(Exception):
 
 
 class Lost(Refusal):
-    """A refusal of words that may mean something else than what they were taken for."""
+    """A refusal of words that may mean something else than what they were taken for; `meant`: in plainer words."""
+
+    meant = ""
 
 
 class LookFirst(Exception):
@@ -55,7 +57,7 @@ class PlanBuilder:
         self.unmet = ""
         self.moved, self.leaving = False, False
         self.effort = [0]
-        self.collecting: set[str] = set()
+        self.collecting, self.got = set[str](), set[str]()
         self._found: set[str] = set()
 
     def fork(self) -> "PlanBuilder":
@@ -66,14 +68,14 @@ class PlanBuilder:
         other.need, other.unmet = self.need, self.unmet
         other.moved, other.leaving = self.moved, self.leaving
         other._found, other.effort = set(self._found), self.effort
-        other.collecting = set(self.collecting)
+        other.collecting, other.got = set(self.collecting), set(self.got)
         return other
 
     def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
         self.told = other.told
         self.moved, self.leaving = other.moved, other.leaving
-        self._found, self.collecting = other._found, other.collecting
+        self._found, self.collecting, self.got = other._found, other.collecting, other.got
         self.choices.taken, self.need, self.unmet = other.choices.taken, other.need, other.unmet
 
     # --- steps
@@ -108,8 +110,19 @@ class PlanBuilder:
         """Several objects at once, one after the other, once it is said where to; the hand holds one."""
         self.last, self.collecting = items, {t.label for t in items}
 
+    def _not_over(self, label: str) -> None:
+        """Take back the steps that would only hand a thing over: `get the mug, then the can, and put both there`."""
+        self.got.discard(label)
+        for at in reversed(range(len(self.steps))):
+            part = self.steps[at : at + 4]
+            if part[0].object == label and [s.action for s in part] == ["find", "grasp", "return", "release"]:
+                self._found.discard(label)
+                del self.steps[at : at + 4]
+
     def take(self, item: BelievedObject, words: str = "") -> None:
         """Have it in the hand; what else is there is put down first."""
+        if item.label in self.got:
+            self._not_over(item.label)
         self.collecting.discard(item.label)
         held = self.world.held
         if held is not None and held.label == item.label:

@@ -111,6 +111,11 @@ def test_a_condition_is_looked_into(said: str, acts: list[str]) -> None:
         ("busy:bring me the apple", "once i've got that i'll want the bowl, too", "queue: fetch(yellow bowl)",
          "asked rightly"),
         ("last:find the red ball", "bring it to me", "fetch(red ball)", "right"),
+        ("heard:bring me the blue block", "yes the small one", "yes()", "right"),
+        ("-", "if you find the wallet put it on the dresser", "put(wallet, dresser)", "right"),
+        ("-", "if you find the apple put it on the dresser", "put(wallet, dresser)", "wrong"),
+        ("which:red mug|blue mug", "both", "pick(red mug) & pick(blue mug)", "not understood"),
+        ("which:red mug|blue mug", "where's the blue one", "answer(counter)", "not understood"),
         ("last:take the red ball", "now drop it", "drop()", "right"),
     ],
 )  # fmt: skip

@@ -11,6 +11,9 @@ from tests.everyday import Sentence, planned, understand, verdict
         ("get the red mug and then the blue mug and put both on the desk", "put(red mug, desk); put(blue mug, desk)"),
         ("get the apple, get the blue mug, then put them both on the desk", "put(apple, desk); put(blue mug, desk)"),
         ("get me a can. any can", "fetch(green can/red can/white can)"),
+        ("get the apple, bin it, then come back", "put(apple, bin); return()"),
+        ("bring me the apple, then put it on the desk", "fetch(apple); put(apple, desk)"),
+        ("bring me 2 blocks", "fetch(blue block) & fetch(yellow block)"),
         ("bring me a mug, any mug", "fetch(red mug/blue mug/white mug)"),
     ],
 )
@@ -34,7 +37,6 @@ def test_what_is_held_is_put_beside_a_thing(context: str, said: str, right: str)
 @pytest.mark.parametrize(
     ("said", "asked"),
     [
-        ("remember: all toys belong in the toy box", "toys always belong on the toy box"),
         ("hold position 45 seconds", "wait 45 seconds"),
         ("lend me twenty quid", "bring me the twenty quid"),
         ("will you say night night teddy to him", "say night night teddy"),
@@ -44,3 +46,21 @@ def test_what_is_held_is_put_beside_a_thing(context: str, said: str, right: str)
 def test_what_most_likely_means_something_else_is_asked_about(said: str, asked: str) -> None:
     found = planned(said)
     assert (found.steps, found.asks) == ([], asked)
+
+
+@pytest.mark.parametrize(
+    ("said", "right"),
+    [
+        ("remember: all toys belong in the toy box", "rule(toys, toy box)"),
+        ("fruit belongs on the kitchen table, please remember that", "rule(fruit, kitchen table)"),
+        ("just so you know, mugs go on the desk", "rule(mugs, desk)"),
+        ("put the apple on the desk, remember that", "put(apple, desk)"),
+        ("scrap the box rule", "refuse()"),
+    ],
+)
+def test_what_is_to_be_remembered_is_a_rule(said: str, right: str) -> None:
+    assert verdict(Sentence("-", said, right), planned(said)) == "right"
+
+
+def test_a_rule_about_one_thing_is_asked_about() -> None:
+    assert planned("my charger has its place on the desk now").asks == "my charger always belong on the desk"

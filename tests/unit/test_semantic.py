@@ -144,6 +144,7 @@ def test_times_words_to_say_and_names_are_asked_about(said: str, meant: str) -> 
             "put the red mug on the counter",
         ),
         ("last:bring me the apple", "and the ball from up there", "bring me the red ball"),
+        ("failed:bring me the remote", "look again, try the living table", "bring me the remote"),
     ],
 )
 def test_a_part_of_the_command_before_is_exchanged(context: str, said: str, meant: str) -> None:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
+from common.language.mood import is_asked
 from common.language.normalise import normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.simplify import simplified
@@ -20,6 +21,9 @@ _NO_NAME = frozenset({
 _CARDINALS = ("one", "two", "three", "four", "five")
 _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(?=.*\w)")
 """What was said before the words that are meant: `did i say mug? i meant ...`."""
+_SEVERAL = re.compile(
+    r"^(?:(?:i want|bring(?: me)?|get(?: me)?|give me|take|well|oh|yes) )*(?:both|all|each)\b(?! the same| right)"
+)
 SURE, FIRM = 0.71, 0.95
 """Least probability of a choice that no wording makes, and of one where something is passed over (chosen on lists left
 out)."""
@@ -32,6 +36,9 @@ def chosen(
 
     Another colour of the same kind names one that was not among the options.
     """
+    said = normalise(answer)
+    if not said or _SEVERAL.match(said) or is_asked(tuple(said.split())):
+        return None  # more than one, or a question of one's own
     if (found := _singled_out(answer, options, known, household)) or household is None:
         return found
     meant = _SAID_BEFORE.sub("", normalise(answer, ","))

@@ -24,7 +24,7 @@ from common.language.wording import Action
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]
 
 _CONTROLS: dict[Action, Kind] = {"stop": "stop", "cancel": "cancel", "come_back": "return"}
-_FETCH: frozenset[Action] = frozenset({"fetch", "fetch_named", "pick_up", "find"})
+_FETCH: frozenset[Action] = frozenset({"fetch", "get", "fetch_named", "pick_up", "find"})
 _INDEFINITE = re.compile(r"\b(?:a|an|any|some)\s+\w")
 
 

@@ -46,6 +46,12 @@ def fetch(builder: PlanBuilder, slots: Slots) -> None:
     builder.last = [m.object for m in everything]
 
 
+def get(builder: PlanBuilder, slots: Slots) -> None:
+    """`get the mug`: to the person, unless it is said where to before it comes to anything else with it."""
+    fetch(builder, slots)
+    builder.got |= {t.label for t in builder.last}
+
+
 def _brought(builder: PlanBuilder, item: BelievedObject) -> bool:
     """Is the last that the plan does with a thing to hand it over?"""
     over = {
@@ -54,14 +60,6 @@ def _brought(builder: PlanBuilder, item: BelievedObject) -> bool:
         if step.action == "grasp"
     }
     return over.get(item.label, False)
-
-
-def _not_over(builder: PlanBuilder, labels: set[str]) -> None:
-    """Take back the steps that would only hand these things over: `get the mug, then the can, and put both there`."""
-    actions = [[s.action for s in builder.steps[at : at + 4]] for at in range(len(builder.steps))]
-    for at in reversed(range(len(builder.steps))):
-        if builder.steps[at].object in labels and actions[at] == ["find", "grasp", *_OVER]:
-            del builder.steps[at : at + 4]
 
 
 def deliver(builder: PlanBuilder, slots: Slots) -> None:
@@ -91,8 +89,6 @@ def put(builder: PlanBuilder, slots: Slots) -> None:
     """Put things in or on something that holds things."""
     everything = referents(builder, slots["thing"], prefer_held=True)
     where = _surface(builder, slots)
-    if " ".join(slots["thing"]) in PLURAL_PRONOUNS:
-        _not_over(builder, {m.object.label for m in everything})
     for meant in everything:
         _put(builder, meant, where)
     builder.last = [m.object for m in everything]
@@ -136,7 +132,10 @@ def put_where(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def put_near(builder: PlanBuilder, slots: Slots) -> None:
-    """Next to a thing: on what that stands on."""
+    """Next to a thing: on what that stands on; by a bed: on the surface that stands there."""
+    if builder.vocabulary.furniture(slots["spot"]) and len(by := builder.vocabulary.surfaces_by(slots["spot"])) == 1:
+        put(builder, {**slots, "spot": tuple(by[0].name.split())})
+        return
     if builder.vocabulary.spot(slots["spot"]) or builder.vocabulary.furniture(slots["spot"]):
         raise Refusal(f"I cannot put things on the floor next to the {' '.join(slots['spot'][1:] or slots['spot'])}")
     moved = referents(builder, slots["thing"], prefer_held=True)

@@ -19,7 +19,7 @@ _GREETED = re.compile(
 """`hello to anna`: whom a courtesy is for is spoken to."""
 _MANNER = re.compile(
     r"^(?:(?:loudly|softly|quietly|clearly|aloud|out loud) |the words? (?=\w))+"
-    r"| (?:(?:out )?loud|aloud|loudly|softly|for me|in (?:your|a) (?:\w+ )?voice)$"
+    r"| (?:(?:(?:really|very|out) )?loud|aloud|loudly|softly|for me|in (?:your|a) (?:\w+ ){0,2}voice)$"
 )
 """How something is to be said, which is not said with it."""
 

@@ -43,7 +43,9 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     plural = isinstance(phrase, Phrase) and (phrase.plural or (phrase.sense.new and _is_plural(things[-1])))
     whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but or phrase.count > 1)
     if things[0] in ONES or not (plural and whole):
-        raise Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")
+        lost = Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")
+        lost.meant = f"{' '.join(things)} always belong on {' '.join(slots['spot'])}"
+        raise lost
     rule_always(builder, slots)
 
 

@@ -75,6 +75,8 @@ class Attempts:
             for text in (self._command, *others) if self._config.open_vocabulary and isinstance(refusal, Lost) else ():
                 with suppress(Refusal):
                     return self._read(text, new_nouns=True)
+            if not literally and (plainer := self._plainer(refusal)):
+                raise Suggestion(str(refusal), plainer) from None
             self._choices.taken, self._text = taken, self._command
             lost = isinstance(refusal, Lost)
             if not ((meant := self.guessed()) and meant.steps) or (not lost and (meant.answers or meant.p < SURE)):
@@ -87,6 +89,15 @@ class Attempts:
             if self.is_said(plainly):
                 return meant.steps
             raise Suggestion(str(refusal), plainly) from None
+
+    def _plainer(self, refusal: Refusal) -> str:
+        """The plainer words that a refusal knows for all that was said, "" where they cannot be planned."""
+        whole = len(commands(self._command[:MAX_CHARACTERS], self._is_place)) == 1
+        if meant := refusal.meant if isinstance(refusal, Lost) and whole else "":
+            with suppress(Refusal):
+                self._read(meant, new_nouns=self._config.open_vocabulary)
+                return meant
+        return ""
 
     def _without_more(self) -> list[str]:
         """What was said without the reason behind it, and without the parts that ask for nothing, where it has such."""

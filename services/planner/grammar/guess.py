@@ -136,11 +136,12 @@ def contradicted(words: Words, steps: Sequence[PlanStep], likely: Guess, known: 
     if all(step.action == "say" for step in steps):  # "who but you can take the can to the desk", "say hi to him"
         other = [(s.action, s.text) for s in steps] != [(s.action, s.text) for s in likely.steps]
         says = any(text.startswith("say ") for text in likely.texts)
-        return bool(likely.steps) and other and not likely.answers and likely.p >= (FIRM if says else CERTAIN)
+        acts = says or any(step.action not in ("find", "say") for step in likely.steps)  # a find is answered as well
+        return acts and other and not likely.answers and likely.p >= (FIRM if says else CERTAIN)
     if not likely.steps:
         return likely.p >= IDLE
     done, others = _acts(steps), _acts(likely.steps)
-    if likely.answers or not done or done == others or set(others) > set(done):
+    if likely.answers or not done or done == others or set(others) >= set(done):
         return False
     unlisted, guessed = _unlisted(steps, known), _unlisted(likely.steps, known)
     new = {word for label in unlisted for word in label.split()}.intersection(words)

@@ -13,7 +13,7 @@ from common.messages import History
 
 _NO = re.compile(
     r"^(?:(?:no|nope|wrong(?: one| \w+)?|that is (?:the )?wrong(?: one| \w+)?|not (?:this|that)(?: one| \w+)?|"
-    r"thanks|thank you|but|sorry|well) )*"
+    r"thanks|thank you|but|sorry|well|oh|ah|hm+|um+) )*"
     r"(?:not (?:on|in|to|into) (?:the|my) \w+ )?(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| "
     r"them)? (?P<rest>.+)$"
     r"|^(?:wait |no |sorry |actually )*make (?:it|that) (?P<made>.+)$"

@@ -47,6 +47,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "deliver": bringing.deliver,
     "deliver_there": bringing.deliver_there,
     "fetch": bringing.fetch,
+    "get": bringing.get,
     "fetch_named": bringing.fetch_named,
     "pick_up": hand.pick_up,
     "find": going.find,

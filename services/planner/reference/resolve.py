@@ -172,6 +172,9 @@ def _related(
         if phrase.count != 1 or phrase.sense.every:
             builder.look_first(surfaces, f"I have seen no {phrase.singular} there yet")
         return [unseen(builder, phrase, specs, place)]
+    if phrase.relation == "on" and (furniture := builder.vocabulary.furniture(phrase.anchor)):
+        there = [t for t in seen if t.on == furniture]  # on a bed, which nobody lists as a surface
+        return choose(builder, phrase, there, specs) if there else [unseen(builder, phrase, specs, None)]
     if phrase.relation == "near" and spots:
         near = [t for t in seen if any(is_near(builder, t, s) for s in spots)]
         return choose(builder, phrase, near, specs) if near else [unseen(builder, phrase, specs, spots[0])]

@@ -68,7 +68,7 @@ FORMS: dict[str, Form] = {
     "look_at": Form("look at {goal}", "go"),
     "open": Form("open your hand", "fingers"),
     "close": Form("close your hand", "fingers"),
-    "again": Form("try again"),
+    "again": Form("{instead}"),
     "with": Form("{instead}"),
     "say": Form("say {words}", "say"),
     "teach": Form("this is my {words}", "name"),
@@ -94,7 +94,7 @@ FORMS: dict[str, Form] = {
     "holding": Form("what are you holding", kind="ask"),
     "rules": Form("what are your rules", kind="ask"),
 }
-"""Each plain command and question by its name; `instead`: the last command with another thing or place in it."""
+"""Each plain command and question by its name; `instead`: the last command, with another thing or place in it."""
 _SAYING = frozenset({
     "say", "tell", "shout", "announce", "holler", "yell", "call", "whisper", "repeat", "declare", "sing", "wish",
     "greet", "ask", "remind", "inform", "mention", "read", "recite", "speak", "hear", "know", "cry",
@@ -204,7 +204,9 @@ def _quotes(words: Words, begins: Iterable[int], marks: Sequence[int], names: Se
 
 
 def _exchanged(words: Words, found: Sequence[Chunk], before: str) -> Iterator[Candidate]:
-    """The command before with one thing or place of the sentence in it, which has no verb of its own."""
+    """The command before, as it is or with one thing or place of the sentence in it, which has no verb of its own."""
+    if before:
+        yield Candidate("again", before, {})
     if not before or any(infinitive(word, COMMANDING) in COMMANDING - _LIGHT for word in words) or is_asked(words):
         return
     for at, chunk in enumerate(found):
