@@ -36,7 +36,7 @@ def chosen(
 
     Another colour of the same kind names one that was not among the options.
     """
-    said = normalise(answer)
+    said = _SAID_BEFORE.sub("", normalise(answer)).strip()
     if not said or _SEVERAL.match(said) or is_asked(tuple(said.split())):
         return None  # more than one, or a question of one's own
     if (found := _singled_out(answer, options, known, household)) or household is None:

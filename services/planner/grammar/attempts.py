@@ -79,7 +79,7 @@ class Attempts:
                 raise Suggestion(str(refusal), plainer) from None
             self._choices.taken, self._text = taken, self._command
             lost = isinstance(refusal, Lost)
-            if not ((meant := self.guessed()) and meant.steps) or (not lost and (meant.answers or meant.p < SURE)):
+            if (meant := self.guessed()) is None or (not lost and (meant.answers or meant.p < SURE)):
                 raise
             if meant.answers:  # an answer moves nothing, so there is nothing to ask about first
                 return meant.steps
@@ -134,7 +134,7 @@ class Attempts:
         return self.likeliest()
 
     def likeliest(self) -> Guess | None:
-        """The plan of the likeliest parts of what was said, None where there is none."""
+        """The plan of the likeliest parts of what was said; None where these ask for nothing that can be done."""
         with suppress(Refusal):
             return guess(parse(tokens(self._text[:MAX_CHARACTERS]), self._vocabulary), self._builder())
         return None

@@ -57,7 +57,7 @@ def plan(
         detail = detail or (_unlikely(clauses, steps, likely, world) if likely else "")
         if not detail:
             return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
-        asked = likely.steps if likely and likely.steps and not likely.answers else steps
+        asked = likely.steps if likely and not likely.answers else steps
         meant = "" if literally else as_command(asked, world)
         if likely and asked is likely.steps and not literally:
             meant = meant or ", then ".join(likely.texts)

@@ -25,11 +25,9 @@ SURE = 0.5
 """Least probability of a guess at what was understood otherwise (chosen on lists left out)."""
 FIRM = 0.8
 """Least probability of a guess that a plan for things all known has to agree with (chosen on lists left out)."""
-IDLE = 0.85
-"""Least probability that nothing is asked for, with which a plan is doubted (chosen on lists left out)."""
 CERTAIN = 0.9
 """Least probability of a guess that does something, where the plan only answers in words (chosen likewise)."""
-_DEEDS = frozenset({"grasp", "place", "release", "return", "rule", "teach", "forget", "name"})
+_DEEDS = frozenset({"grasp", "place", "release", "return", "rule"})
 """Actions by which plans differ that do something else, beside waiting; others go before these, or move nothing."""
 _EXCEPT = frozenset({"but", "except", "excluding", "without"})
 """Words behind which stands what no guess takes account of."""
@@ -99,19 +97,15 @@ def _likely(words: Words, builder: PlanBuilder) -> list[str]:
 
 
 def guess(parts: Sequence[Part], builder: PlanBuilder) -> Guess:
-    """The plan of the likeliest parts of a sentence, without steps for one that asks for nothing.
-
-    What is told in it is noted.
+    """The plan of the likeliest parts of a sentence; what is told in it is noted.
 
     Raises:
-        Refusal: it cannot be planned, or what it means is too uncertain.
+        Refusal: it asks for nothing, cannot be planned, or what it asks for is too uncertain.
     """
     asked = [part for part in parts if part.meant.text]
-    p = min((part.p for part in asked or parts), default=0.0)
+    p = min((part.p for part in asked), default=0.0)
     if p < LEAST:
         raise Refusal(_NOTHING)
-    if not asked:
-        return Guess([], [], answers=False, p=p)
     builder.vocabulary.new_nouns = builder.config.open_vocabulary
     try:
         for part in parts:
@@ -133,13 +127,10 @@ def contradicted(words: Words, steps: Sequence[PlanStep], likely: Guess, known: 
     A thing among the words that is not `known` by its name is doubted sooner, for any words may look like one. On lists
     left out 11 of 13 such plans are wrong, and 7 of 17 of the others.
     """
-    if all(step.action == "say" for step in steps):  # "who but you can take the can to the desk", "say hi to him"
-        other = [(s.action, s.text) for s in steps] != [(s.action, s.text) for s in likely.steps]
-        says = any(text.startswith("say ") for text in likely.texts)
-        acts = says or any(step.action not in ("find", "say") for step in likely.steps)  # a find is answered as well
-        return acts and other and not likely.answers and likely.p >= (FIRM if says else CERTAIN)
-    if not likely.steps:
-        return likely.p >= IDLE
+    if all(step.action == "say" for step in steps):
+        says = any(text.startswith("say ") for text in likely.texts)  # "say hello and then go to the kitchen"
+        acts = any(step.action != "say" and (says or step.action != "find") for step in likely.steps)
+        return acts and not likely.answers and likely.p >= (FIRM if says else CERTAIN)
     done, others = _acts(steps), _acts(likely.steps)
     if likely.answers or not done or done == others or set(others) >= set(done):
         return False
