@@ -28,7 +28,7 @@ from bench.speech_noise import KINDS, noisy
 from common import config
 from common.household import load_household
 from common.language.normalise import normalise
-from common.messages import PlanStep
+from common.messages import ActionPlan, PlanStep
 from common.plan_rules import known_world
 from common.sound import RATE, Samples, read_wav
 from evaluation.person.voice import utter
@@ -38,6 +38,7 @@ from services.planner.grammar import grammar
 from services.planner.transcriptions import DOUBTFUL, chosen
 from services.planner.world import believed
 from services.speech.config import SpeechConfig
+from services.speech.recognise.free_text import as_heard
 from services.speech.recognise.recogniser import Recognition
 from services.speech.recognise.wake_text import without_wake
 from services.speech.transcribe import Reader
@@ -47,6 +48,7 @@ Outcome = Literal["same", "asked", "asked wrongly", "not understood", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = ("same", "asked", "asked wrongly", "not understood", "wrong")
 SURE = config.load("brain", BrainConfig, config.DEFAULT_DIR, {}).confirm_below
 """Confidence from which the brain does not ask."""
+LISTENING = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})
 ROWS = (
     ("cmd", "clean"), ("cmd", "10"), ("wakecmd", "clean"), ("wakecmd", "10"), ("wake", ""), ("near", ""), ("oog", ""),
 )  # fmt: skip
@@ -89,10 +91,10 @@ def main() -> int:
     recordings = [r for r in recordings if args.voice in ("", r["voice"])]
     if args.everyday:
         _everyday(reader, recordings, mix, args)
-    else:
+    else:  # without the voice and the planner, whose memory is not the recogniser's
         _commands(reader, recordings, mix, parameters, args)
-    memory = psutil.Process().memory_full_info()
-    print(f"memory: {memory.rss / 1e6:.0f} MB resident, {memory.pss / 1e6:.0f} MB proportional")
+        memory = psutil.Process().memory_full_info()
+        print(f"memory: {memory.rss / 1e6:.0f} MB resident, {memory.pss / 1e6:.0f} MB proportional")
     return 0
 
 
@@ -179,23 +181,26 @@ def drawn(count: int, seed: int) -> list[str]:
 
 def outcome(said: str, heard: Recognition) -> Outcome:
     """What comes of a sentence that was `said`: its plan at once or after "Did you say ...?", or another one."""
-    if heard.verdict not in ("accept", "ask") or not heard.text:
+    command = heard.verdict in ("accept", "ask") and bool(heard.text)
+    if (words := heard if command else as_heard(heard, LISTENING)) is None:
         return "not understood"
-    text = in_doubt(heard)
-    wanted, found = _steps(said), _steps(text or heard.text)
-    if text or heard.verdict == "ask" or heard.confidence < SURE:
+    weighed = weigh(words)
+    if not (command or weighed.steps or weighed.detail == DOUBTFUL):
+        return "not understood"
+    doubted = weighed.suggestion if weighed.detail == DOUBTFUL else ""
+    wanted, found = _steps(said), _steps(doubted or words.text)
+    if doubted or not command or heard.verdict == "ask" or heard.confidence < SURE:
         return "asked" if found == wanted else "asked wrongly"
     if found == wanted:
         return "same"
     return "wrong" if any(step.action != "say" for step in found) else "not understood"
 
 
-def in_doubt(heard: Recognition) -> str:
-    """The transcription that the planner wants to have asked about, "" where it has no doubt."""
+def weigh(heard: Recognition) -> ActionPlan:
+    """What the planner makes of all that was perhaps said."""
     told = known_world(HOME, [thing.label for thing in FLAT], "")
     world = believed(HOME, told, FLAT, (0.0, 0.0, 0.0), NOW)
-    found = chosen(heard.text, heard.alternatives, lambda text: grammar.plan(text, world, CONFIG), world.names)
-    return found.suggestion if found.detail == DOUBTFUL else ""
+    return chosen(heard.text, heard.alternatives, lambda text: grammar.plan(text, world, CONFIG), world.names)
 
 
 def _steps(text: str) -> list[PlanStep]:

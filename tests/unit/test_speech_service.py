@@ -13,6 +13,7 @@ from common.runtime import StartError
 from common.sound import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
+from services.speech.recognise import token_trie
 from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.recogniser import patterns
 from services.speech.recognise.token_trie import AnyTokens, TokenTrie
@@ -81,6 +82,17 @@ def test_tokens_that_continue_a_sentence_are_found_whatever_their_case_and_lengt
     numbers, states = vocabulary.allowed(after[5])
     assert sorted(numbers) == [6, 7]
     assert grammar.is_final(dict(zip(numbers.tolist(), states, strict=True))[6])
+
+
+def test_what_was_walked_of_a_grammar_is_kept_within_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(token_trie, "STATES", 1)
+    grammar = Grammar(("go", "stop"), {})
+    trie = TokenTrie(["", "", "", " go", " stop", "?"], grammar)
+    first = trie.allowed(grammar.start)
+    assert list(first[0]) == [3, 4, 5]
+    trie.allowed(grammar.walk(" go"))
+    assert len(grammar._steps) < len(" go stop"), "of the first state nothing is kept"
+    assert list(trie.allowed(grammar.start)[0]) == [3, 4, 5] and trie.allowed(grammar.start)[1] == first[1]
 
 
 def test_without_a_grammar_every_written_token_may_follow() -> None:

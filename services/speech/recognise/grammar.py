@@ -52,6 +52,10 @@ class Grammar:
             self._steps[key] = found
         return found
 
+    def forget_walks(self) -> None:
+        """Let go of the states that were found so far; they are found anew."""
+        self._steps.clear()
+
     def walk(self, text: str, state: State | None = None) -> State:
         """The state after `text`."""
         state = self.start if state is None else state

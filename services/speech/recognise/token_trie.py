@@ -57,6 +57,7 @@ class TokenTrie:
         if state not in self._allowed:
             if len(self._allowed) >= STATES:
                 self._allowed.clear()
+                self.grammar.forget_walks()
             numbers: list[int] = []
             states: list[State] = []
             self._collect(self._trie, state, numbers, states)
