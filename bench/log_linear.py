@@ -1,7 +1,9 @@
 """How the models of common/language/log_linear.py are learnt: from which options of each example are right."""
 
+from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +34,19 @@ def known_words(sentences: Iterable[Sequence[str]]) -> frozenset[str]:
     """Words that are said often enough to be told apart."""
     said = Counter(word for words in sentences for word in set(words))
     return frozenset(word for word, times in said.items() if times >= LEAST)
+
+
+def arguments(doc: str | None) -> ArgumentParser:
+    """Of what learns a model from the lists of sentences."""
+    parser = ArgumentParser(description=doc, formatter_class=RawDescriptionHelpFormatter)
+    parser.add_argument("--without", nargs="*", default=[], metavar="LIST", help="lists that nothing is learnt from")
+    return parser
+
+
+def save(model: LogLinear, path: Path, learnt_from: int) -> None:
+    """Write a model beside the code that reads it."""
+    model.save(path)
+    print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {learnt_from} sentences")
 
 
 def learn(examples: Sequence[Example], words: frozenset[str]) -> LogLinear:

@@ -5,7 +5,6 @@ python -m bench.offered --without 36 37     # learns from all the others
 python -m bench.offered --apart L8 L13      # what wordings and a model of the others make of these lists
 """
 
-import argparse
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -61,15 +60,12 @@ def learn(rows: Sequence[Answer]) -> LogLinear:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--without", nargs="*", default=[], metavar="LIST", help="lists that nothing is learnt from")
+    parser = log_linear.arguments(__doc__)
     parser.add_argument("--apart", nargs="+", metavar="LIST", help="lists to leave out and measure")
     args = parser.parse_args()
     rows = [row for row in answers() if row.list not in args.without]
     if not args.apart:
-        path = Path(offered.__file__).with_name(offered.WEIGHTS)
-        learn(rows).save(path)
-        print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {len(rows)} answers")
+        log_linear.save(learn(rows), Path(offered.__file__).with_name(offered.WEIGHTS), len(rows))
         return
     offered.use(learn([row for row in rows if row.list not in args.apart]))
     found: Counter[str] = Counter()

@@ -5,7 +5,6 @@ python -m bench.senses --without 36 37     # learns from all the others
 python -m bench.senses --apart L4 --apart L2 L3   # what wordings and model make of lists that it has not seen
 """
 
-import argparse
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -103,8 +102,7 @@ def _apart(model: Senses, rows: Sequence[Said], lists: Sequence[str]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--without", nargs="*", default=[], metavar="LIST", help="lists that nothing is learnt from")
+    parser = log_linear.arguments(__doc__)
     parser.add_argument("--apart", nargs="+", action="append", metavar="LIST", help="lists to leave out and measure")
     args = parser.parse_args()
     for tag, model, of_act, wording in MODELS:
@@ -112,9 +110,7 @@ def main() -> None:
         for lists in args.apart or ():
             _apart(model, rows, lists)
         if not args.apart:
-            path = Path(senses.__file__).with_name(model.weights)
-            learn(model, rows).save(path)
-            print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {len(rows)} sentences")
+            log_linear.save(learn(model, rows), Path(senses.__file__).with_name(model.weights), len(rows))
 
 
 if __name__ == "__main__":

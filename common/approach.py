@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from common.floor_plan import FloorPlan, Receptacle
-from common.geometry import Pose2
+from common.geometry import Pose2, from_segment
 
 Point = tuple[float, float]
 FOOTPRINT = 0.29
@@ -87,12 +87,6 @@ def clearance(floor_plan: FloorPlan, x: float, y: float) -> float:
 
 def _distances(floor_plan: FloorPlan, x: float, y: float) -> Iterator[float]:
     for wall in floor_plan.walls:
-        yield max(0.0, _to_segment(x, y, wall.start, wall.end) - wall.thickness / 2)
+        yield max(0.0, from_segment(x, y, wall.start, wall.end) - wall.thickness / 2)
     for footprint in floor_plan.footprints:
         yield footprint.distance(x, y)
-
-
-def _to_segment(x: float, y: float, a: Point, b: Point) -> float:
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    t = min(1.0, max(0.0, ((x - a[0]) * dx + (y - a[1]) * dy) / max(dx * dx + dy * dy, 1e-9)))
-    return math.hypot(x - a[0] - t * dx, y - a[1] - t * dy)

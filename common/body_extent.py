@@ -1,4 +1,4 @@
-"""How low a body reaches, by the shapes of its geoms that collide: for the simulation and its judges."""
+"""The extent of compiled bodies: corners of a mesh, and how low what collides reaches."""
 
 import math
 from typing import Any
@@ -6,6 +6,12 @@ from typing import Any
 import mujoco
 
 _TYPE = mujoco.mjtGeom
+
+
+def corners(model: Any, mesh: int) -> Any:
+    """Corners (n, 3) [m] of a compiled mesh, in its own frame."""
+    begin = int(model.mesh_vertadr[mesh])
+    return model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])]
 
 
 def lowest(model: Any, data: Any, body: int) -> float:
@@ -19,9 +25,7 @@ def _below(model: Any, g: int, up: Any) -> float:
     """How far [m] a geom reaches below its origin; `up` (3,): the vertical in its own frame."""
     kind, size = model.geom_type[g], model.geom_size[g]
     if kind == _TYPE.mjGEOM_MESH:
-        mesh = int(model.geom_dataid[g])
-        begin = int(model.mesh_vertadr[mesh])
-        return -float((model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ up).min())
+        return -float((corners(model, int(model.geom_dataid[g])) @ up).min())
     if kind == _TYPE.mjGEOM_ELLIPSOID:
         return float(math.hypot(*(size * up)))
     if kind == _TYPE.mjGEOM_BOX:

@@ -1,6 +1,8 @@
 """Angles, planar poses, rectangles on the floor plan and quaternions (w, x, y, z)."""
 
 import math
+from bisect import bisect_right
+from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -37,6 +39,23 @@ def to_frame(frame: Pose2, point: tuple[float, float]) -> tuple[float, float]:
     """A point of the parent frame in `frame`."""
     x, y, _ = compose(inverse(frame), (point[0], point[1], 0.0))
     return x, y
+
+
+def pose_at(rows: Sequence[tuple[float, Pose2]], t: float) -> Pose2:
+    """The pose at `t` [s] between the two of (time, pose) around it; the first or the last one beyond them."""
+    after = bisect_right(rows, t, key=lambda row: row[0])
+    if after in (0, len(rows)):
+        return rows[min(after, len(rows) - 1)][1]
+    (t0, a), (t1, b) = rows[after - 1], rows[after]
+    s = (t - t0) / (t1 - t0)
+    return a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), wrap(a[2] + s * wrap(b[2] - a[2]))
+
+
+def from_segment(x: float, y: float, a: tuple[float, float], b: tuple[float, float]) -> float:
+    """Distance [m] of a point from the straight line from `a` to `b`."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    t = min(1.0, max(0.0, ((x - a[0]) * dx + (y - a[1]) * dy) / max(dx * dx + dy * dy, 1e-9)))
+    return math.hypot(x - a[0] - t * dx, y - a[1] - t * dy)
 
 
 class Rectangle(NamedTuple):

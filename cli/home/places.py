@@ -18,22 +18,14 @@ def places(args: argparse.Namespace) -> int:
         return _list(link.present(topics.HOUSEHOLD_PARTS).parts, args.json)
 
 
-def name(args: argparse.Namespace) -> int:
+def edit(args: argparse.Namespace) -> int:
+    """Ask the brain for the edit that a subcommand stands for."""
     with linked(args) as link:
         part = _part(link, args.part) if args.part else ""
-        edit = m.HouseholdEdit(do="name", name=" ".join(args.name), part=part, kind=args.kind, id=fresh_id())
-        return _ask(link, edit, args.json)
-
-
-def rename(args: argparse.Namespace) -> int:
-    with linked(args) as link:
-        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(link, args.old), id=fresh_id())
-        return _ask(link, edit, args.json)
-
-
-def forget(args: argparse.Namespace) -> int:
-    with linked(args) as link:
-        return _ask(link, m.HouseholdEdit(do="forget", name=" ".join(args.name), id=fresh_id()), args.json)
+        wish = m.HouseholdEdit(do=args.do, name=" ".join(args.name), part=part, kind=args.kind, id=fresh_id())
+        result = link.ask(topics.HOUSEHOLD_EDIT, wish, topics.HOUSEHOLD_EDITED, ANSWER, "the brain")
+        print(msgspec.json.encode(result).decode() if args.json else told(wish, result))
+        return 0 if result.ok else 1
 
 
 def rules(args: argparse.Namespace) -> int:
@@ -49,11 +41,6 @@ def rules(args: argparse.Namespace) -> int:
         return 0
 
 
-def forget_rule(args: argparse.Namespace) -> int:
-    with linked(args) as link:
-        return _ask(link, m.HouseholdEdit(do="forget rule", name=" ".join(args.things), id=fresh_id()), args.json)
-
-
 def _part(link: Link, wanted: str) -> str:
     """A part's name as the home has it.
 
@@ -64,12 +51,6 @@ def _part(link: Link, wanted: str) -> str:
     if wanted not in names:
         raise CliError(f"nothing is called {wanted!r}{near(wanted, names)}; `tidybot places` lists all")
     return wanted
-
-
-def _ask(link: Link, edit: m.HouseholdEdit, as_json: bool) -> int:
-    result = link.ask(topics.HOUSEHOLD_EDIT, edit, topics.HOUSEHOLD_EDITED, ANSWER, "the brain")
-    print(msgspec.json.encode(result).decode() if as_json else told(edit, result))
-    return 0 if result.ok else 1
 
 
 def told(edit: m.HouseholdEdit, result: m.EditResult) -> str:
@@ -104,20 +85,22 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     one.add_argument("name", nargs="+", help='what it is called, such as "kitchen" or "desk"')
     one.add_argument("--part", help="the part meant, by its present name")
     one.add_argument("--kind", choices=("room", "surface", "place"), default="", help="where the name does not tell")
-    one.set_defaults(run=name)
+    one.set_defaults(do="name")
     two = actions.add_parser("rename", help="give a part another name")
-    two.add_argument("old")
-    two.add_argument("new")
-    two.set_defaults(run=rename)
+    two.add_argument("part", metavar="old")
+    two.add_argument("name", nargs=1, metavar="new")
+    two.set_defaults(do="name", kind="")
     three = actions.add_parser("forget", help="forget a name that was given")
     three.add_argument("name", nargs="+")
-    three.set_defaults(run=forget)
+    three.set_defaults(do="forget", part="", kind="")
     tidying = commands.add_parser("rules", help="where things belong, as people told it: list, forget")
     tidying.set_defaults(run=rules)
     choices = tidying.add_subparsers(metavar="ACTION")
     four = choices.add_parser("forget", help="take a rule back, by its things; without them the newest")
-    four.add_argument("things", nargs="*", help='such as "mugs"')
-    four.set_defaults(run=forget_rule)
+    four.add_argument("name", nargs="*", metavar="things", help='such as "mugs"')
+    four.set_defaults(do="forget rule", part="", kind="")
+    for each in (one, two, three, four):
+        each.set_defaults(run=edit)
     for each in (parser, one, two, three, tidying, four):
         each.add_argument("--json", action="store_true", help="as JSON")
         add_options(each)

@@ -17,6 +17,7 @@ from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, environme
 from cli.processes.services import Service
 from common.installation import ROOT, workspace
 from common.process import supervisor
+from common.process.host import stat_of
 from common.time import clock
 
 STATES = {
@@ -224,8 +225,4 @@ class Supervision:
 
 
 def _alive(pid: int) -> bool:
-    try:
-        stat = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
-    except OSError:
-        return False
-    return stat.rpartition(")")[2].split()[0] != "Z"
+    return stat_of(pid)[:1] not in ([], ["Z"])

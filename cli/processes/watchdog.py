@@ -6,7 +6,6 @@ and by `service/<name>/health` once a second, which a loop that never returns le
 
 import os
 import sys
-from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -18,7 +17,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.session import BusError, open_session
-from common.process.host import StopSignal, die_with_parent
+from common.process.host import StopSignal, die_with_parent, stat_of
 from common.security.keys import OFF
 from common.time.clock import monotonic, unix_time
 
@@ -67,11 +66,10 @@ class Pulse:
 
 def look(pid: int) -> tuple[bool, float]:
     """Whether a signal has stopped the process, and the processor time it has had [s]."""
-    try:
-        words = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
-        return words[0] == "T", (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
-    except (OSError, IndexError, ValueError):
+    words = stat_of(pid)
+    if not words:
         return False, 0.0
+    return words[0] == "T", (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def watch(supervision: Supervision, stop: StopSignal) -> None:

@@ -44,15 +44,15 @@ def bounds(model: Any, data: Any, turn: Array) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) [m] of all that is no plane, after the rotation `turn` (3, 3)."""
     import mujoco
 
+    from common.body_extent import corners
+
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for g in range(model.ngeom):
         if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE:
             continue
         own, at = turn @ data.geom_xmat[g].reshape(3, 3), turn @ data.geom_xpos[g]
         if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_MESH:
-            mesh = int(model.geom_dataid[g])
-            begin = int(model.mesh_vertadr[mesh])
-            points = model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ own.T + at
+            points = corners(model, int(model.geom_dataid[g])) @ own.T + at
         else:
             centre, half = model.geom_aabb[g, :3], model.geom_aabb[g, 3:]
             signs = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, -1).T

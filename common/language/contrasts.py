@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import filled, noun_phrases, verb_first
+from common.language.exchange import filled, noun_phrases, verb_first, with_thing
 from common.language.lexicon import A_VERB, COMMANDING
 from common.language.normalise import DETERMINERS, infinitive
 from common.language.politeness import without_politeness
@@ -73,18 +73,11 @@ def _right(wrong: str, right: str) -> str:
     if verb not in COMMANDING:
         return filled(right, wrong)
     if verb_first(right):
-        return filled(_of_thing(right, thing), thing)
+        said = thing.split()
+        return filled(right if said[:1] in (["it"], ["them"]) else with_thing(right, said), thing)
     words = wrong.split()
     receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
     return f"{verb} {receiver}{filled(right, thing)}"
-
-
-def _of_thing(command: str, said: str) -> str:
-    """`put it there` with the thing that was spoken of in place of its "it"."""
-    words = said.split()
-    spans = noun_phrases(words) if words[:1] not in (["it"], ["them"]) else []
-    thing = " ".join(words[spans[0][0] : spans[0][1]]) if spans else ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, command, count=1) if thing else command
 
 
 def with_qualities(said: str, wrong: str, right: str) -> str:

@@ -35,7 +35,7 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False, explain
     if not new:
         return None
     if verb_first(meant) and not (len(new) == 1 or new[1] in ("one", "ones")):
-        return _with_thing(meant, words)
+        return with_thing(meant, words)
     if new[0] in PREPOSITIONS:
         at = next((i for i in range(len(words) - 1, 0, -1) if words[i] in PREPOSITIONS), len(words))
         return " ".join((*words[:at], *new))
@@ -53,10 +53,10 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False, explain
     return " ".join((*words[:start], *whole.split(), *words[end:]))
 
 
-def _with_thing(meant: str, said: list[str]) -> str:
-    """A command with the first thing that was said before in place of its "it"."""
-    spans = noun_phrases([w.strip(",") for w in said])
-    thing = " ".join(said[spans[0][0] : spans[0][1]]).strip(",") if spans else ""
+def with_thing(meant: str, said: list[str]) -> str:
+    """`put it there` with the first thing of the words that were said before in place of its "it"."""
+    spans = noun_phrases(said)
+    thing = " ".join(said[slice(*spans[0])]).strip(",") if spans else ""
     return re.sub(r"(?<=\w )(?:it|them)\b", thing, meant, count=1) if thing else meant
 
 

@@ -77,6 +77,15 @@ def return_memory() -> None:
         trim(0)
 
 
+def stat_of(pid: int) -> list[str]:
+    """What Linux tells of a process: the fields of proc(5)'s `stat` from its state on; none when it has ended."""
+    try:
+        text = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return []
+    return text.rpartition(")")[2].split()
+
+
 def rss_mb() -> float:
     """Resident memory of this process [MB]."""
     try:

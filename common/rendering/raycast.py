@@ -14,7 +14,8 @@ FAR = 30.0
 """Length of a ray [m]."""
 CHUNK = 16384
 """Rays of one call; chosen: 400 kB of directions fit the processor's cache."""
-_TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
+TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
+"""This MuJoCo tells the normals of what rays hit, too."""
 _SKY = np.array(SKY, np.float64)
 _LIGHT = np.array([0.3, -0.4, 0.87])
 
@@ -39,7 +40,7 @@ def _cast(
     for a in range(0, count, CHUNK):
         b = min(count, a + CHUNK)
         part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
-        middle = (ids, part, normals) if _TAKES_NORMAL else (ids, part)
+        middle = (ids, part, normals) if TAKES_NORMAL else (ids, part)
         mujoco.mj_multiRay(model, data, origin, rays[a:b].reshape(-1), groups, 1, exclude, *middle, b - a, FAR)
         distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
     return distance, geom, normal
@@ -68,7 +69,7 @@ def image(
     seen = (distance >= 0) & (distance < FAR)
     depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
     colours = geom_colours(model) * 255
-    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(len(rays), 0.85)
+    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if TAKES_NORMAL else np.full(len(rays), 0.85)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
     shown = np.where(seen, geom, -1).reshape(height, width)
     return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth, shown

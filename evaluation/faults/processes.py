@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cli.processes.supervision import WORLD, Supervision
+from common.process.host import stat_of
 from common.time.clock import monotonic
 from evaluation.case import Case, TimedFault
 from evaluation.faults.reports import FaultReport, Reporter
@@ -154,13 +155,7 @@ def _send(process: int, number: signal.Signals) -> bool:
 def _stopped(pid: int) -> bool:
     """The system says so; every thread stops within a moment of the signal."""
     end = monotonic() + DEAD
-    while monotonic() < end:
-        try:
-            state = (
-                Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()[0]
-            )
-        except OSError:
-            return False
-        if state == "T":
+    while monotonic() < end and (words := stat_of(pid)):
+        if words[0] == "T":
             return True
     return False

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from common.approach import FOOTPRINT
 from common.floor_plan import Vec2, Wall
+from common.geometry import from_segment
 from services.mapping.grid import OCCUPIED, RESOLUTION, Cells, Grid
 
 PANE = 2.5
@@ -52,18 +53,10 @@ def panes(barriers: Sequence[Met], states: NDArray[np.uint8], grid: Grid) -> lis
         off = math.copysign(BEFORE, sides[0])
         dx, dy = -step[1] * off, step[0] * off
         ends = (ax + dx, ay + dy), (bx + dx, by + dy)
-        if not any(all(_off(end, line) < APART for end in ends) for line in found):
+        if not any(all(from_segment(*end, *line) < APART for end in ends) for line in found):
             back = -step[0], -step[1]
             found.append((_frame(ends[0], back, states, grid), _frame(ends[1], step, states, grid)))
     return found
-
-
-def _off(point: Vec2, line: tuple[Vec2, Vec2]) -> float:
-    """Distance [m] from a line between two points."""
-    (ax, ay), (bx, by) = line
-    ux, uy, px, py = bx - ax, by - ay, point[0] - ax, point[1] - ay
-    share = min(1.0, max(0.0, (px * ux + py * uy) / max(ux * ux + uy * uy, 1e-9)))
-    return math.hypot(px - share * ux, py - share * uy)
 
 
 def _frame(point: Vec2, step: Vec2, states: NDArray[np.uint8], grid: Grid) -> Vec2:

@@ -1,11 +1,10 @@
 """The wheels' pose at a stamp."""
 
-from bisect import bisect_left
 from collections import deque
 from collections.abc import Iterable
 
 from common import messages as m
-from common.geometry import Pose2, wrap
+from common.geometry import Pose2, pose_at
 
 MAX_VALUE = 1e6
 """What no odometry reports [s, m, rad, rad/s]: a fault of its sender."""
@@ -41,9 +40,4 @@ class OdometryBuffer:
         """Between the two samples around `t` [s]; None when they do not reach so far back."""
         if not self._rows or t < self._rows[0][0] - STALE:
             return None
-        after = bisect_left(self._rows, t, key=lambda row: row[0])
-        if after == 0 or after == len(self._rows):
-            return self._rows[min(after, len(self._rows) - 1)][1]
-        (t0, a), (t1, b) = self._rows[after - 1], self._rows[after]
-        s = (t - t0) / max(t1 - t0, 1e-9)
-        return a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), wrap(a[2] + s * wrap(b[2] - a[2]))
+        return pose_at(self._rows, t)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import KDTree
 
-from common.geometry import Array, Pose2
+from common.geometry import Array, Pose2, transformed
 
 LAYERS = (-0.1, 0.0, 0.1)
 """Heights at which the points are repeated [m]: as far apart as neighbours on a wall some metres away."""
@@ -64,10 +64,7 @@ class Target:
 
 def placed(points: Array, pose: Pose2) -> Array:
     """Points (n, 2 or 3) of the frame at `pose` in its parent; heights stay."""
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    moved = points.copy()
-    moved[:, :2] = points[:, :2] @ np.array([[c, s], [-s, c]]) + pose[:2]
-    return moved
+    return np.column_stack([transformed(pose, points[:, :2]), points[:, 2:]])
 
 
 def _layered(points: Array) -> Array:

@@ -6,6 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from common.body_extent import corners
 from common.geometry import Array
 from common.robot.model import (
     ARM,
@@ -109,9 +110,7 @@ def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
     """
     turn, box = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom]
     if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
-        mesh = int(model.geom_dataid[geom])
-        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-        points = data.geom_xpos[geom] + model.mesh_vert[first : first + count] @ turn.T
+        points = data.geom_xpos[geom] + corners(model, int(model.geom_dataid[geom])) @ turn.T
         return points.min(axis=0), points.max(axis=0)
     middle, half = data.geom_xpos[geom] + turn @ box[:3], np.abs(turn) @ box[3:]
     return middle - half, middle + half

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
+from common.rendering.raycast import TAKES_NORMAL
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 from services.sim.things.primitives import GROUP
 
@@ -16,7 +17,6 @@ SEEN = 0
 BASE_BODY = "base"
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 """Rays of a turn [count] and nearest and farthest range [m], as small lidars for indoors have them."""
-_TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
 
 
 def cast(
@@ -29,7 +29,7 @@ def cast(
     n = len(directions)
     geom, distance = np.empty(n, np.int32), np.empty(n)
     flat = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1)
-    middle = (geom, distance, None) if _TAKES_NORMAL else (geom, distance)
+    middle = (geom, distance, None) if TAKES_NORMAL else (geom, distance)
     mujoco.mj_multiRay(model, data, origin, flat, groups, 1, without, *middle, n, 100.0)
     return distance, geom
 

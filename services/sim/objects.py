@@ -13,7 +13,6 @@ from services.sim.things.primitives import geom, ring
 
 def _mug(spec: ObjectSpec) -> str:
     r, h = spec.size[0] / 2, spec.size[2]
-    bottom = geom(spec, f'type="cylinder" size="{r - 0.003} 0.004" pos="0 0 {-h / 2 + 0.004}"', 0.2)
     handle = "".join(
         geom(spec, f'type="capsule" fromto="{a}" size="0.0045"', 0.04)
         for a in (
@@ -22,7 +21,7 @@ def _mug(spec: ObjectSpec) -> str:
             f"{r + 0.022} 0 {-h * 0.20} {r - 0.002} 0 {-h * 0.28}",
         )
     )
-    return ring(spec, r, h / 2, 0.0, kind_of(spec.kind).wall / 2, 0.0, 0.68, r) + bottom + handle
+    return _cup(spec, 0.68, 0.2) + handle
 
 
 def _bowl(spec: ObjectSpec) -> str:
@@ -31,7 +30,7 @@ def _bowl(spec: ObjectSpec) -> str:
     base_r = kind.foot(spec.size)
     bottom = geom(spec, f'type="cylinder" size="{base_r + 0.004} 0.005" pos="0 0 {-h / 2 + 0.005}"', 0.3)
     half = h / 2 / math.cos(kind.lean)
-    return ring(spec, (r + base_r) / 2, half, 0.0, kind.wall / 2, kind.lean, 0.7, r) + bottom
+    return ring(spec, (r + base_r) / 2, half, kind.wall / 2, kind.lean, 0.7, r) + bottom
 
 
 def _bottle(spec: ObjectSpec) -> str:
@@ -46,10 +45,11 @@ def _bottle(spec: ObjectSpec) -> str:
     )
 
 
-def _cup(spec: ObjectSpec) -> str:
+def _cup(spec: ObjectSpec, wall: float = 0.75, floor: float = 0.25) -> str:
+    """`wall`, `floor`: their shares of the mass."""
     r, h = spec.size[0] / 2, spec.size[2]
-    bottom = geom(spec, f'type="cylinder" size="{r - 0.003} 0.004" pos="0 0 {-h / 2 + 0.004}"', 0.25)
-    return ring(spec, r, h / 2, 0.0, kind_of("mug").wall / 2, 0.0, 0.75, r) + bottom
+    bottom = geom(spec, f'type="cylinder" size="{r - 0.003} 0.004" pos="0 0 {-h / 2 + 0.004}"', floor)
+    return ring(spec, r, h / 2, kind_of("mug").wall / 2, 0.0, wall, r) + bottom
 
 
 def _plate(spec: ObjectSpec) -> str:
@@ -57,7 +57,7 @@ def _plate(spec: ObjectSpec) -> str:
     foot = PLATE_FOOT * r
     bottom = geom(spec, f'type="cylinder" size="{foot + 0.003} 0.003" pos="0 0 {-h / 2 + 0.003}"', 0.5)
     half, lean = math.hypot(r - foot, h) / 2, math.atan2(r - foot, h)
-    return ring(spec, (r + foot) / 2, half, 0.0, 0.0025, lean, 0.5, r) + bottom
+    return ring(spec, (r + foot) / 2, half, 0.0025, lean, 0.5, r) + bottom
 
 
 _BODIES = {

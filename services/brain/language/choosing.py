@@ -11,7 +11,7 @@ from common.language.noun_phrase import WHICH, Which, related
 from common.language.simplify import simplified
 from common.messages import WorldObject
 from services.brain.language.dialogue import by_wording
-from services.brain.language.offered import BESIDE, UNFIT, likeliest, words_of
+from services.brain.language.offered import UNFIT, beside, likeliest, words_of
 
 _NO_NAME = frozenset({
     "one", "whichever", "of", "them", "those", "these", "will", "with", "go", "the", "please", "that", "this", "mean",
@@ -105,26 +105,17 @@ def _stands_where(option: str, answer: str, known: Sequence[WorldObject], househ
     for head, relation, anchor in related(tuple(answer.split())):
         names = set(without_determiners(head)) - _NO_NAME
         where = " ".join(without_determiners(anchor))
-        if relation == "near" and names <= set(option.split()) and _is_beside(option, where, known):
+        if not names <= set(option.split()):
+            continue
+        items = [o for o in known if o.label == option]
+        if relation == "near" and any(where in (o.label, o.kind) for item in items for o in beside(item, known)):
             return True
-        if relation != "on" or not names <= set(option.split()):
+        if relation != "on":
             continue
         receptacle = household.receptacle(where)
         rooms = {r.name for r in household.rooms if where == r.name or where in r.aliases}
-        for item in (o for o in known if o.label == option):
+        for item in items:
             room = household.room_at(item.position[0], item.position[1])
             if (receptacle and item.on == receptacle.name) or (room is not None and room.name in rooms):
                 return True
     return False
-
-
-def _is_beside(option: str, other: str, known: Sequence[WorldObject]) -> bool:
-    """Does the option stand within a reach of a thing of the other name, on the same surface?"""
-    places = [o for o in known if o.label == option]
-    others = [o for o in known if o.label == other or o.kind == other]
-    return any(
-        a.on == b.on and math.dist(a.position[:2], b.position[:2]) < BESIDE
-        for a in places
-        for b in others
-        if a is not b
-    )

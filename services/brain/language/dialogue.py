@@ -8,7 +8,7 @@ from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.contrasts import with_qualities
 from common.language.discourse import commands
-from common.language.exchange import PREPOSITIONS, noun_phrases, replaced
+from common.language.exchange import PREPOSITIONS, replaced, with_thing
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise
@@ -101,7 +101,7 @@ def corrected(command: str, correction: str, household: Household) -> str:
     if set(correction.split()) <= household.words.colours.keys():
         thing = f"the {correction} one"
     if _is_command(correction):
-        return _with_object(correction, command)
+        return with_thing(correction, normalise(command).split())
     exchanged = replaced(normalise(command), correction if correction.split()[0] in PREPOSITIONS else thing, is_place)
     return exchanged or correction
 
@@ -115,16 +115,6 @@ def answered(suggestion: str, answer: str, household: Household) -> str:
     names = len(words) <= LONGEST_NAME and not _is_command(answer) and not is_question(answer)
     begins = words[:1] and words[0] in DETERMINERS | PREPOSITIONS
     return corrected(suggestion, answer, household) if words and (begins or names) else answer
-
-
-def _with_object(correction: str, command: str) -> str:
-    """`put it on the counter` after a question about `put the apple on the desk` speaks of the apple."""
-    words = normalise(command).split()
-    spans = noun_phrases(words)
-    if not spans:
-        return correction
-    thing = " ".join(words[spans[0][0] : spans[0][1]])
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, correction, count=1)
 
 
 def _is_command(text: str) -> bool:

@@ -120,7 +120,7 @@ def _marks(option: str, known: Sequence[WorldObject], household: Household) -> I
         for text in (item.text, *item.names):
             for word in normalise(text).split():
                 yield "print", word
-        for other in _beside(item, known):
+        for other in beside(item, known):
             for word in normalise(f"{other.label} {other.text}").split():
                 yield "beside", word
     groups = household.words.groups
@@ -140,7 +140,8 @@ def _where(part: Receptacle, household: Household) -> Iterator[str]:
         yield from (room.name, *room.aliases)
 
 
-def _beside(item: WorldObject, known: Sequence[WorldObject]) -> Iterator[WorldObject]:
+def beside(item: WorldObject, known: Sequence[WorldObject]) -> Iterator[WorldObject]:
+    """What stands within a reach of it, on the same surface."""
     for other in known:
         apart = math.dist(other.position[:2], item.position[:2])
         if other.label != item.label and other.on == item.on and apart < BESIDE:

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common import messages as m
 from common import topics
@@ -19,13 +18,12 @@ from services.navigation.localisation.map_fit import MapFit
 from services.navigation.localisation.scan import Scan, scan_of
 from services.navigation.motion.obstacle_tracker import ObstacleTracker
 from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.obstacle_layer import in_discs
 
 NEAR = 4.0
 """Range up to which lidar points are braked for and tracked [m]; chosen: beyond what the robot reaches in 5 s."""
 EXPLAINED = 0.15
 """Distance from the map's walls and furniture within which they explain a point [m]; chosen: five times its noise."""
-ROBOT = 0.2
-"""How far beyond another robot's footprint points are still its own [m]: what it drives until the next message."""
 AROUND = 0.15
 """How far beyond a person's radius points are still theirs [m]: a stride, and the error of the track."""
 FOUND = (0.1, 0.1, 0.05)
@@ -58,7 +56,7 @@ class StateEstimator:
         self.unmapped: Array = np.empty((0, 2))
         self.fresh = False
         self.robots: list[tuple[float, float, float]] = []
-        """Circles (x, y, radius) [map, m] that other robots say they stand in."""
+        """Circles (x, y, radius) [map, m] in which points are other robots' own."""
         self._odometry: m.Odometry | None = None
         self._measured = self._scanned = 0.0
 
@@ -149,7 +147,7 @@ class StateEstimator:
         self.points = placed[near]
         if not self.lost:
             mapped = self.field.near if self._live is None else self._map.explains
-            explained = mapped(placed, EXPLAINED) | _within(placed, self.robots)
+            explained = mapped(placed, EXPLAINED) | in_discs(placed[:, 0], placed[:, 1], self.robots)
             left = self.unmapped = placed[near & ~explained]
             self.tracker.update(left, (frame[0], frame[1]), now, self._map.obstacles.stood_at(left, now))
             # A map in the making fits by itself.
@@ -167,16 +165,8 @@ class StateEstimator:
                 angles = scan.angles + eye[2]
                 ends = eye[:2] + reach[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=1)
                 # What another robot holds up tells nothing, as what this one does.
-                reach = np.where(_within(ends, self.robots), 0.0, reach)
+                reach = np.where(in_discs(ends[:, 0], ends[:, 1], self.robots), 0.0, reach)
             costmap.obstacles.see(eye, scan.angles, reach, scan.range_max, now, people, moving)
-
-
-def _within(points: Array, circles: list[tuple[float, float, float]]) -> NDArray[np.bool_]:
-    """Which points (n, 2) lie in or around one of the robots' circles."""
-    found = np.zeros(len(points), bool)
-    for x, y, radius in circles:
-        found |= np.hypot(points[:, 0] - x, points[:, 1] - y) < radius + ROBOT
-    return found
 
 
 def _diagonal(spread: tuple[float, float, float]) -> list[float]:

@@ -11,7 +11,6 @@ from common.bus.port import Io
 from common.geometry import Array, Pose2
 from common.mission_log.states import under_way
 from services.navigation.config import NavigationConfig
-from services.navigation.localisation.state_estimation import ROBOT
 from services.navigation.motion.navigator import Navigator
 from services.navigation.others.motion import NEAR, Other, Way, closes_in
 from services.navigation.others.right_of_way import AHEAD, RightOfWay, goes_first
@@ -21,6 +20,8 @@ from services.navigation.planning.planner import PathPlanner, Point
 
 PERIOD = 0.2
 """Time between two messages [s]: the rate of the topic."""
+OWN = 0.2
+"""How far beyond another robot's footprint points are still its own [m]: what it drives until the next message."""
 SILENT = 1.5
 """Silence after which a robot is taken for what the lidar sees of it [s]; chosen: seven messages."""
 THIN, TOLD = 4, 120
@@ -46,8 +47,8 @@ class _Known:
 
 
 class Neighbours:
-    """`circles` (x, y, radius) [map, m] are where the others stand, `first` those that go first, `others` those that
-    make way for this one."""
+    """`first` are those that go first, `others` those that make way for this one; in the `circles` (x, y, radius)
+    [map, m] points are of one of them."""
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap, planner: PathPlanner) -> None:
         self._config, self._io, self._map = config, io, costmap
@@ -85,7 +86,7 @@ class Neighbours:
             if told.flat == self.flat and all(map(math.isfinite, (told.x, told.y, told.radius))):
                 self._note(name, told, now)
         self._known = {n: k for n, k in self._heard.items() if now - k.at < SILENT}
-        self.circles = [(k.told.x, k.told.y, k.told.radius) for k in self._known.values()]
+        self.circles = [(k.told.x, k.told.y, k.told.radius + OWN) for k in self._known.values()]
         self.state = self._standing(pose, driving, now)
         if self.state == "fixed":
             self.right_of_way.go_on()
@@ -100,7 +101,7 @@ class Neighbours:
                 self.first.append(_other(name, k, now))
             else:
                 self.others.append(_other(name, k, now))
-        self._map.obstacles.disown([(x, y, radius + ROBOT) for x, y, radius in self.circles])
+        self._map.obstacles.disown(self.circles)
         self._map.place(fixed, "robots")
 
     def _note(self, name: str, told: m.DriveIntent, now: float) -> None:

@@ -79,8 +79,8 @@ class ObstacleLayer:
         rows, columns = self._seen.cells()
         if not len(rows) or not discs:
             return rows[:0], columns[:0]
-        inside = _inside(*self._cells.middles(rows, columns), discs)
-        return rows[inside], columns[inside]
+        within = in_discs(*self._cells.middles(rows, columns), discs)
+        return rows[within], columns[within]
 
     # --- what a scan shows
     def see(
@@ -114,7 +114,7 @@ class ObstacleLayer:
         self._seen.mark((rows, columns), now)
         self._seen.mark_people(self._within(moving), STIRS, now)
         self._seen.mark_people(self._within(people), STANDS, now)
-        person = _inside(xs[inside][new], ys[inside][new], [*people, *moving])
+        person = in_discs(xs[inside][new], ys[inside][new], [*people, *moving])
         self.changes.occupied((rows[~person], columns[~person]), now)
         if (self._seen.known != before).any():
             self.version += 1
@@ -170,7 +170,7 @@ class ObstacleLayer:
             self.version += 1
 
 
-def _inside(xs: Array, ys: Array, discs: Discs) -> Grid:
+def in_discs(xs: Array, ys: Array, discs: Discs) -> Grid:
     """Which points (n,) lie in one of the circles."""
     found = np.zeros(len(xs), bool)
     for x, y, radius in discs:

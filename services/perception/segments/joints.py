@@ -6,7 +6,7 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.segments.segment import Segment
+from services.perception.segments.segment import Segment, renumbered
 from services.perception.views.view import View
 
 LOW = 0.045
@@ -52,5 +52,4 @@ def jointed(
             level = np.mean(meet < STEP + STEP_NOISE * noise) >= some if len(meet) else False
             if level or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
-    left, found = np.unique(names[cut], return_inverse=True)
-    return found.reshape(-1).astype(np.intp) if len(left) > 1 else None
+    return renumbered(names[cut])

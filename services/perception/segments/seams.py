@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from services.perception.segments.segment import Segment
+from services.perception.segments.segment import Segment, renumbered
 from services.perception.views.view import View
 
 PATCH = 0.01
@@ -31,8 +31,7 @@ def unseamed(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) 
     for (a, b), share in _running_on(view, segment, cut, noise).items():
         if share >= RUNS_ON:
             joined[joined == joined[b]] = joined[a]
-    names, found = np.unique(joined[cut], return_inverse=True)
-    return found.reshape(-1).astype(np.intp) if len(names) > 1 else None
+    return renumbered(joined[cut])
 
 
 def _running_on(view: View, segment: Segment, cut: NDArray[np.intp], noise: float) -> dict[tuple[int, int], float]:

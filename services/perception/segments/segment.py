@@ -46,6 +46,12 @@ class Segment:
     shape: Measurement | None = None
 
 
+def renumbered(names: NDArray[np.intp]) -> NDArray[np.intp] | None:
+    """Names of pieces (n,) as numbers from 0 on; None where there is but one piece."""
+    kept, found = np.unique(names, return_inverse=True)
+    return found.reshape(-1).astype(np.intp) if len(kept) > 1 else None
+
+
 def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:
     """Whether something nearer, or the robot itself (`own`), covers a part of the segment, its left, its right end."""
     window, mask = _around(view, rows, columns)

@@ -42,14 +42,15 @@ class Fit:
 
 
 @cache
-def _outline(kind: Kind, size: Vec3) -> Array:
-    """Starts and directions (radius, height) of the outline's segments (4, k, 1)."""
-    ends = np.array(kind.profile(size)).transpose(1, 2, 0)[..., None]
+def outline(kind: Kind, size: Vec3, foot: bool = False) -> Array:
+    """Starts and directions (radius, height) of the outline's segments (4, k, 1), with its `foot` if asked for."""
+    below = [((0, 0), (size[0] / 2, 0))] if foot else []
+    ends = np.array([*kind.profile(size), *below]).transpose(1, 2, 0)[..., None]
     return np.concatenate([ends[0], ends[1] - ends[0]])
 
 
-def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array]:
-    """Distance (n,) of points at radius `rho` and height `z`, and how it grows with the radius."""
+def from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array, Array]:
+    """Distance (n,) of points at radius `rho` and height `z`, and how it grows with either."""
     r0, z0, dr, dz = outline
     across, up = rho - r0, z - z0
     t = np.minimum(np.maximum((across * dr + up * dz) / (dr * dr + dz * dz), 0.0), 1.0)
@@ -57,7 +58,8 @@ def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array]:
     squared = across * across + up * up
     nearest = squared.argmin(axis=0), np.arange(len(rho))
     distance = np.sqrt(squared[nearest])
-    return distance, across[nearest] / np.maximum(distance, TINY)
+    far = np.maximum(distance, TINY)
+    return distance, across[nearest] / far, up[nearest] / far
 
 
 def _from_box(local: Array, size: Vec3) -> tuple[Array, Array]:
@@ -84,7 +86,7 @@ def residuals(kind: Kind, size: Vec3, points: Array, floor: float, p: Array) -> 
         distance, growth = np.abs(far - r), np.sign(far - r) / np.maximum(far, TINY)
     else:
         rho = np.hypot(dx, dy)
-        distance, growth = _from_outline(rho, z, _outline(kind, size))
+        distance, growth, _ = from_outline(rho, z, outline(kind, size))
         growth = growth / np.maximum(rho, TINY)
     return distance, np.array([-dx * growth, -dy * growth]).T
 

@@ -5,7 +5,6 @@ surface. A mug or a bowl may also stand upside down: the profile mirrored at hal
 """
 
 import math
-from functools import cache
 from itertools import product
 
 import numpy as np
@@ -15,7 +14,7 @@ from common.floor_plan import Vec3
 from common.geometry import Array
 from common.kinds import Kind
 from services.perception.shapes import known as shapes
-from services.perception.shapes.known import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit
+from services.perception.shapes.known import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit, from_outline, outline
 from services.perception.shapes.least_squares import solve
 
 STARTS = (0.0, math.pi / 4, math.pi / 2, 3 * math.pi / 4)
@@ -38,34 +37,13 @@ def extents(size: Vec3) -> Vec3:
     return size[2], size[0], size[0]
 
 
-@cache
-def _outline(kind: Kind, size: Vec3) -> Array:
-    """Starts and directions (radius, height) of the outline's segments (4, k, 1), the foot among them."""
-    radius = size[0] / 2
-    ends = np.array([*kind.profile(size), ((0, 0), (radius, 0))]).transpose(1, 2, 0)[..., None]
-    return np.concatenate([ends[0], ends[1] - ends[0]])
-
-
-def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array, Array]:
-    """Distance (n,) of points at radius `rho` and height `z`, and how it grows with either."""
-    r0, z0, dr, dz = outline
-    across, up = rho - r0, z - z0
-    t = np.clip((across * dr + up * dz) / (dr * dr + dz * dz), 0.0, 1.0)
-    across, up = across - t * dr, up - t * dz
-    squared = across * across + up * up
-    nearest = squared.argmin(axis=0), np.arange(len(rho))
-    distance = np.sqrt(squared[nearest])
-    far = np.maximum(distance, TINY)
-    return distance, across[nearest] / far, up[nearest] / far
-
-
 def _apart(kind: Kind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
     """Distance (n,) of points (n, 3) from a shape that lies at p = (x, y, yaw of its axis), and its slopes (n, 3)."""
     c, s = math.cos(p[2]), math.sin(p[2])
     dx, dy, w = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor - size[0] / 2
     along, side = c * dx + s * dy, c * dy - s * dx
     rho = np.hypot(side, w)
-    distance, outward, endward = _from_outline(rho, along + size[2] / 2, _outline(kind, size))
+    distance, outward, endward = from_outline(rho, along + size[2] / 2, outline(kind, size, foot=True))
     sideward = outward * side / np.maximum(rho, TINY)
     slopes = np.array([s * sideward - c * endward, -c * sideward - s * endward, side * endward - along * sideward])
     return distance, slopes.T

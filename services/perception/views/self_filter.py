@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
+from common.body_extent import corners
 from common.geometry import Array, Pose2
 from common.robot.model import RobotKinematics
 from services.perception.views.view import Mask, View
@@ -78,9 +79,7 @@ def _is_mesh(model: mujoco.MjModel, geom: int) -> bool:
 
 def _faces(model: mujoco.MjModel, geom: int) -> tuple[Array, Array]:
     """Outward normals (k, 3) and offsets (k,) of a mesh's convex hull: inside, every normal @ point + offset <= 0."""
-    mesh = int(model.geom_dataid[geom])
-    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-    planes = ConvexHull(model.mesh_vert[first : first + count]).equations
+    planes = ConvexHull(corners(model, int(model.geom_dataid[geom]))).equations
     return planes[:, :3], planes[:, 3]
 
 

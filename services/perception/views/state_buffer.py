@@ -8,7 +8,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
-from common.geometry import Array, Pose2, wrap
+from common.geometry import Array, Pose2, pose_at, wrap
 from common.robot.grip import Grip
 from common.robot.model import ARM
 from services.perception.views.self_filter import RobotModel
@@ -62,15 +62,7 @@ class StateBuffer:
 
     def base_at(self, t: float) -> Pose2 | None:
         """The base's pose at robot time `t`, between the two estimates around it."""
-        if not self._poses:
-            return None
-        before = [p for p in self._poses if p[0] <= t]
-        after = [p for p in self._poses if p[0] > t]
-        if not before or not after:
-            return (before[-1] if before else after[0])[1]
-        (t0, a), (t1, b) = before[-1], after[0]
-        s = (t - t0) / (t1 - t0)
-        return a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), wrap(a[2] + s * wrap(b[2] - a[2]))
+        return pose_at(self._poses, t) if self._poses else None
 
     def turning(self) -> float:
         """How fast the base turned over the last estimates [rad/s]."""

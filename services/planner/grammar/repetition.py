@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.language.contractions import expand
-from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
+from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first, with_thing
 from common.language.lexicon import COMMANDING, HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise, without_determiners
@@ -107,7 +107,7 @@ def _instead(said: str, last: str, is_place: IsPlace) -> str:
         return filled(said, thing)
     if not {"it", "them"} & set(rest):
         return ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, said, count=1)
+    return with_thing(said, normalise(last).split())
 
 
 def without_politeness_at_end(text: str) -> str:

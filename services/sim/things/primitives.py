@@ -35,7 +35,7 @@ def geom(spec: ObjectSpec, shape: str, share: float, rgba: tuple[float, ...] | N
 
 
 def ring(
-    spec: ObjectSpec, radius: float, half: float, z: float, thickness: float, lean: float, share: float, widest: float
+    spec: ObjectSpec, radius: float, half: float, thickness: float, lean: float, share: float, widest: float
 ) -> str:
     """A wall of boxes around the z axis, closed up to the radius `widest`; `lean` tilts each outward."""
     width = widest * math.tan(math.pi / _WALLS) * 1.02
@@ -47,7 +47,7 @@ def ring(
         ca, sa, cl, sl = math.cos(a / 2), math.sin(a / 2), math.cos(lean / 2), math.sin(lean / 2)
         quat = f"{ca * cl:.6f} {-sa * sl:.6f} {ca * sl:.6f} {sa * cl:.6f}"
         shape = (
-            f'type="box" size="{thickness} {width:.5f} {half}" pos="{r * math.cos(a):.5f} {r * math.sin(a):.5f} {z}" '
+            f'type="box" size="{thickness} {width:.5f} {half}" pos="{r * math.cos(a):.5f} {r * math.sin(a):.5f} 0.0" '
             f'quat="{quat}"'
         )
         parts.append(geom(spec, shape, share / _WALLS))
