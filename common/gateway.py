@@ -1,12 +1,11 @@
 """What gateways to other tools have in common: what these may ask of the robot, and when."""
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from common import messages as m
 from common.bus.port import Io
 from common.bus.validation import bad_field
 from common.geometry import quat_yaw
-from common.messages.base import Quat
 from common.robot.frames import MAP
 
 M = TypeVar("M", bound=m.Message)
@@ -44,17 +43,19 @@ def due(rate: float, since: float) -> bool:
     return rate > 0 and since >= 1 / rate
 
 
-def standing_pose(frame: str, x: float, y: float, q: Quat) -> m.NavGoal:
-    """A goal from a stamped pose, orientation (w, x, y, z).
+def standing_pose(stamped: Any) -> m.NavGoal:
+    """A goal from what has the fields of a geometry_msgs/PoseStamped.
 
     Raises:
         ValueError: in another frame than the map, or not on the floor.
     """
+    frame, p, o = stamped.header.frame_id, stamped.pose.position, stamped.pose.orientation
+    q = o.w, o.x, o.y, o.z
     if frame.lstrip("/") != MAP:
         raise ValueError(f"a pose in frame {frame!r}: expected {MAP}")
     if not abs(sum(v * v for v in q) - 1) < LEVEL or abs(q[1]) > LEVEL or abs(q[2]) > LEVEL:
         raise ValueError("an orientation that is no rotation about the vertical")
-    return m.NavGoal(x=x, y=y, theta=quat_yaw(q))
+    return m.NavGoal(x=p.x, y=p.y, theta=quat_yaw(q))
 
 
 def stop(io: Io, reason: str) -> m.RobotStop:

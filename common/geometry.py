@@ -131,6 +131,24 @@ def transformed(frame: Pose2, points: Array) -> Array:
     return moved
 
 
+def cell_means(points: Array, side: float) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+    """The mean (k, d) of those of the points (n, d), at least one, that share a cell of `side`; the first of them (k,),
+    and how many they are (k,)."""
+    cells = np.floor(points / side).astype(np.int64)
+    cells -= cells.min(axis=0)
+    # One number for a cell, in the same order: rows of an array sort slowly.
+    numbers = np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1))
+    _, first, place, counts = np.unique(numbers, return_index=True, return_inverse=True, return_counts=True)
+    sums = np.stack([np.bincount(place, column) for column in points.T], axis=1)
+    return sums / counts[:, None], first, counts
+
+
+def yaw_matrix(yaw: float) -> Array:
+    """Rotation matrix (3, 3) by `yaw` about z."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
 def yaw_quat(yaw: float) -> tuple[float, float, float, float]:
     """Rotation by `yaw` about z."""
     return math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)

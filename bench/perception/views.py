@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from common.geometry import Pose2
+from common.geometry import Pose2, yaw_matrix
 from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, body_name, load_scene
 from services.camera.sensor import StereoCamera
@@ -78,8 +78,7 @@ def take(
     position, rotation = renderer.optical_pose("head")
     # Where the robot believes to be is a little off.
     x, y, theta = (v + float(rng.normal(0.0, args.pose_noise)) for v in pose)
-    c, s = math.cos(theta), math.sin(theta)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = yaw_matrix(theta)
     return View(
         rgb=rgb,
         depth=(np.round(np.maximum(depth, 0.0) * 1000) / 1000).astype(np.float32),

@@ -1,6 +1,7 @@
 """Homes without end: a seed in, a flat with furniture and things out. Pure."""
 
 import math
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -12,6 +13,7 @@ from evaluation.homes.catalogue import EXTRAS
 from evaluation.homes.furnish import Furnished, furnish
 from evaluation.homes.rooms import NoHome, Shell, draw_shell, united
 
+T = TypeVar("T", Box, Receptacle)
 ROOMS = (1, 6)
 """Fewest and most rooms of a home."""
 DRAWS = 60
@@ -52,11 +54,9 @@ def _as_scene(found: Furnished, name: str, objects: tuple[ObjectSpec, ...]) -> S
         x, y = to_frame(home, point)
         return round(x, 3), round(y, 3)
 
-    def box(b: Box) -> Box:
-        return msgspec.structs.replace(b, center=(*at(b.center[:2]), round(b.center[2], 3)), yaw=_turned(b.yaw, home))
-
-    def receptacle(r: Receptacle) -> Receptacle:
-        return msgspec.structs.replace(r, center=(*at(r.center[:2]), round(r.center[2], 3)), yaw=_turned(r.yaw, home))
+    def stood(one: T) -> T:
+        x, y = at(one.center[:2])
+        return msgspec.structs.replace(one, center=(x, y, round(one.center[2], 3)), yaw=_turned(one.yaw, home))
 
     def corners(low: Vec2, high: Vec2) -> tuple[Vec2, Vec2]:
         (ax, ay), (bx, by) = at(low), at(high)
@@ -76,8 +76,8 @@ def _as_scene(found: Furnished, name: str, objects: tuple[ObjectSpec, ...]) -> S
         delivery=found.tray.name,
         walls=tuple(Wall(start=at(w.start), end=at(w.end), thickness=OUTER_WALL) for w in found.shell.walls),
         rooms=tuple(map(room, _rooms(found.shell))), places=tuple(map(place, found.places)),
-        furniture=tuple(map(box, found.furniture)),
-        receptacles=tuple(map(receptacle, (found.tray, *found.receptacles))), objects=objects,
+        furniture=tuple(map(stood, found.furniture)),
+        receptacles=tuple(map(stood, (found.tray, *found.receptacles))), objects=objects,
     )  # fmt: skip
 
 

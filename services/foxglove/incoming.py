@@ -74,9 +74,7 @@ def twist(io: Io, data: bytes) -> m.CmdVel:
 
 
 def pose(io: Io, data: bytes) -> m.NavGoal:
-    found = msgspec.json.decode(data, type=PoseStamped)
-    p, q = found.pose.position, found.pose.orientation
-    return standing_pose(found.header.frame_id, p.x, p.y, (q.w, q.x, q.y, q.z))
+    return standing_pose(msgspec.json.decode(data, type=PoseStamped))
 
 
 def words(io: Io, data: bytes) -> m.VoiceCommand:

@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from common import messages as m
 from common.approach import FOOTPRINT
-from common.geometry import Array, quat_matrix
+from common.geometry import Array, cell_means, quat_matrix
 
 FLOOR_BAND = 0.06
 """Height [m] within which a pixel may be the floor before the camera's tilt is corrected: 1.5 degrees at 2 m."""
@@ -179,10 +179,4 @@ def _rising(points: Array, seen: NDArray[np.bool_]) -> Array:
 
 def _merged(points: Array) -> Array:
     """One point (k, d), the mean, for each cell of PATCH that holds some of the points (n, d)."""
-    width = points.shape[1]
-    if not len(points):
-        return np.empty((0, width))
-    cells = np.floor(points / PATCH).astype(np.int64)
-    _, where, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-    where = where.ravel()
-    return np.stack([np.bincount(where, points[:, k]) / count for k in range(width)], axis=1)
+    return cell_means(points, PATCH)[0] if len(points) else np.empty((0, points.shape[1]))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from common.floor_plan import Wall
-from common.geometry import Array, Rectangle
+from common.geometry import Array, Rectangle, cell_means
 from services.mapping.askew import askew
 
 AROUND, NEIGHBOURS, LEAST, FLAT = 0.12, 48, 6, 0.85
@@ -98,11 +98,8 @@ def _thinned(points: Array, eyes: Array) -> tuple[Array, Array, Array]:
     """
     if not len(points):
         return points, eyes, np.ones(0)
-    _, first, cell, count = np.unique(
-        np.floor(points / THIN).astype(np.int64), axis=0, return_index=True, return_inverse=True, return_counts=True
-    )
-    cell = cell.ravel()
-    return np.stack([np.bincount(cell, points[:, k]) / count for k in (0, 1)], axis=1), eyes[first], count.astype(float)
+    means, first, count = cell_means(points, THIN)
+    return means, eyes[first], count.astype(float)
 
 
 def _refined(points: Array, weights: Array, normals: Array, yaw: float) -> float:

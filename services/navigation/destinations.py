@@ -3,14 +3,14 @@
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.config import config_dir
+from common.config import config_dir, load
 from common.geometry import Pose2
 from common.viewpoints import viewpoints_of
 from common.whereabouts import likelihood
 from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
 from services.navigation.goals import Choices, Goals
-from services.navigation.places import Places, load_places
+from services.navigation.places import Places, PlacesFile
 from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
 
@@ -20,7 +20,7 @@ class Destinations:
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._places = load_places(config_dir())
+        self._places = load("places", PlacesFile, config_dir(), {})
         self._approaches = ApproachHistory()
         self._goal_id = ""
         self._learn_names()

@@ -1,11 +1,7 @@
 """Names to places: rooms, surfaces and poses of the household, of places.toml, and objects that were seen."""
 
-import tomllib
-from pathlib import Path
-
 import msgspec
 
-from common.config import ConfigError
 from common.floor_plan import Receptacle, Room
 from common.furniture_tops import support_at
 from common.geometry import Pose2
@@ -25,21 +21,6 @@ class PlacesFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     places: dict[str, Spot] = {}
     items: dict[str, Spot] = {}
-
-
-def load_places(directory: Path) -> PlacesFile:
-    """Read places.toml; empty when there is none.
-
-    Raises:
-        ConfigError: bad TOML, an unknown key or a wrong type.
-    """
-    path = directory / "places.toml"
-    try:
-        return msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), PlacesFile)
-    except FileNotFoundError:
-        return PlacesFile()
-    except (tomllib.TOMLDecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: {error}") from None
 
 
 class Places:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array
+from common.geometry import Array, cell_means
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
 from common.messages import ShapeFamily
 from common.naming.looks import OTHER, Measures, likely
@@ -126,13 +126,7 @@ def thinned(points: Array) -> Array:
     """At most MOST_POINTS of points (n, 3), evenly spread, each the mean of its cell."""
     if not len(points):
         return points
-    cells = np.floor(points / VOXEL).astype(np.int64)
-    cells -= cells.min(axis=0)
-    _, rows, layers = cells.max(axis=0) + 1
-    # One number for a cell, in the same order: rows of an array sort slowly.
-    numbers = (cells[:, 0] * rows + cells[:, 1]) * layers + cells[:, 2]
-    _, place, counts = np.unique(numbers, return_inverse=True, return_counts=True)
-    means = np.stack([np.bincount(place, points[:, i]) for i in range(3)], axis=1) / counts[:, None]
+    means, *_ = cell_means(points, VOXEL)
     if len(means) <= MOST_POINTS:
         return means
     return np.asarray(means[np.linspace(0, len(means) - 1, MOST_POINTS).astype(int)])

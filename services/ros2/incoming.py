@@ -36,13 +36,7 @@ def words(topic: Topic[Any]) -> Callable[[Io, Any], m.Message]:
 
 
 def pose(io: Io, message: Any) -> m.NavGoal:
-    """A standing pose in the map.
-
-    Raises:
-        ValueError: in another frame, or not on the floor.
-    """
-    p, q = message.pose.position, message.pose.orientation
-    return standing_pose(message.header.frame_id, p.x, p.y, (q.w, q.x, q.y, q.z))
+    return standing_pose(message)
 
 
 def twist(io: Io, message: Any) -> m.CmdVel:

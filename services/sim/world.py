@@ -51,51 +51,45 @@ def _furniture(scene: Scene) -> str:
     return "".join(parts)
 
 
-def _table(r: Receptacle, rgba: str) -> str:
+def _table(r: Receptacle, name: str, rgba: str) -> list[str]:
     """A top on four legs."""
-    x, y, z = r.center
-    sx, sy = r.size
-    name = r.name.replace(" ", "_")
+    (sx, sy), z = r.size, r.center[2]
     parts = [_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), rgba)]
     for n, (i, j) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):
         center = (i * (sx / 2 - LEG_INSET), j * (sy / 2 - LEG_INSET), (z - _TOP) / 2)
         parts.append(_box(f"{name}_leg_{n}", center, (LEG, LEG, z - _TOP), rgba))
-    return f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
+    return parts
 
 
-def _cabinet(r: Receptacle, rgba: str, top: str) -> str:
+def _cabinet(r: Receptacle, name: str, rgba: str, top: str) -> list[str]:
     """A closed body under a top."""
-    x, y, z = r.center
-    sx, sy = r.size
-    name = r.name.replace(" ", "_")
+    (sx, sy), z = r.size, r.center[2]
     body = _box(f"{name}_body", (0, 0, (z - _TOP) / 2), (sx - 2 * BODY_INSET, sy - 2 * BODY_INSET, z - _TOP), rgba)
-    return (
-        f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{body}'
-        f"{_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), top)}</body>"
-    )
+    return [body, _box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), top)]
 
 
-def _bin(r: Receptacle, rgba: str) -> str:
+def _bin(r: Receptacle, name: str, rgba: str) -> list[str]:
     """An open box: a floor and four walls."""
-    x, y, z = r.center
-    sx, sy = r.size
-    wall, name = BIN_WALL, r.name.replace(" ", "_")
+    (sx, sy), z, wall = r.size, r.center[2], BIN_WALL
     parts = [_box(name, (0, 0, z / 2), (sx, sy, max(z, 0.01)), rgba)]
     for n, (i, j) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
         center = (i * (sx + wall) / 2, j * (sy + wall) / 2, r.depth / 2)
         size = (wall if i else sx + 2 * wall, wall if j else sy + 2 * wall, r.depth)
         parts.append(_box(f"{name}_wall_{n}", center, size, rgba))
-    return f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
+    return parts
 
 
 def _receptacle(r: Receptacle) -> str:
+    name = r.name.replace(" ", "_")
     if r.kind == "bin":
-        return _bin(r, _COLOURS.get(r.colour, _COLOURS["grey"]))
-    if r.kind == "table":
-        return _table(r, _WOOD)
-    if r.kind == "tray":
-        return _cabinet(r, "0.35 0.36 0.40 1", "0.20 0.55 0.55 1")
-    return _cabinet(r, _WHITE if r.kind == "counter" else _WOOD, _STEEL if r.kind == "counter" else _WOOD)
+        parts = _bin(r, name, _COLOURS.get(r.colour, _COLOURS["grey"]))
+    elif r.kind == "table":
+        parts = _table(r, name, _WOOD)
+    elif r.kind == "tray":
+        parts = _cabinet(r, name, "0.35 0.36 0.40 1", "0.20 0.55 0.55 1")
+    else:
+        parts = _cabinet(r, name, *((_WHITE, _STEEL) if r.kind == "counter" else (_WOOD, _WOOD)))
+    return f'<body pos="{r.center[0]} {r.center[1]} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
 
 
 def world_files(scene: Scene, placements: Sequence[Placement]) -> dict[str, bytes]:

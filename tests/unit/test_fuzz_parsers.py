@@ -16,7 +16,7 @@ from cli.missions import audio as cli_audio
 from common import config, scene
 from common.sound import AudioError, read_wav
 from services.navigation.config import NavigationConfig
-from services.navigation.places import load_places
+from services.navigation.places import PlacesFile
 from services.sim.config import SimConfig
 from services.speech.config import SpeechConfig
 from services.speech.speak.voice import Voice
@@ -124,7 +124,8 @@ def test_a_damaged_scene_is_a_scene_or_refused(tmp_path: Path, name: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("section", "kind"), [("navigation", NavigationConfig), ("sim", SimConfig), ("speech", SpeechConfig)]
+    ("section", "kind"),
+    [("navigation", NavigationConfig), ("sim", SimConfig), ("speech", SpeechConfig), ("places", PlacesFile)],
 )
 def test_a_damaged_configuration_is_one_or_refused(tmp_path: Path, section: str, kind: Any) -> None:
     rng, path = random.Random(9), tmp_path / f"{section}.toml"
@@ -137,17 +138,6 @@ def test_a_damaged_configuration_is_one_or_refused(tmp_path: Path, section: str,
             refused += 1
             assert str(error)
     assert refused > 10
-
-
-def test_damaged_places_are_places_or_refused(tmp_path: Path) -> None:
-    rng, path = random.Random(10), tmp_path / "places.toml"
-    text = (config.DEFAULT_DIR / "places.toml").read_text()
-    for _ in range(150):
-        path.write_text(retyped(text, rng))
-        try:
-            load_places(tmp_path)
-        except (config.ConfigError, scene.SceneError) as error:
-            assert str(error)
 
 
 @QUICK

@@ -6,6 +6,7 @@ import pytest
 
 from common import messages as m
 from common.gateway import due, refusal, standing_pose
+from services.foxglove.incoming import Header, Pose, PoseStamped, Quaternion, Vector
 from services.ros2.wire import Qos, RosTopic, attachment, ros_name
 
 
@@ -36,8 +37,12 @@ def test_what_has_a_rate_is_due_once_in_its_period_and_never_at_zero() -> None:
     assert not due(0.0, math.inf) and not due(-1.0, math.inf)
 
 
+def stamped(frame: str, x: float, y: float, q: tuple[float, float, float, float]) -> PoseStamped:
+    return PoseStamped(Header(frame), Pose(Vector(x, y), Quaternion(*q)))
+
+
 def test_a_pose_on_the_floor_of_the_map_is_a_goal() -> None:
-    goal = standing_pose("/map", 1.0, -2.0, (math.cos(0.4), 0.0, 0.0, math.sin(0.4)))
+    goal = standing_pose(stamped("/map", 1.0, -2.0, (math.cos(0.4), 0.0, 0.0, math.sin(0.4))))
     assert (goal.x, goal.y, goal.frame) == (1.0, -2.0, "map")
     assert goal.theta == pytest.approx(0.8)
 
@@ -54,7 +59,7 @@ def test_a_pose_on_the_floor_of_the_map_is_a_goal() -> None:
 )
 def test_a_pose_elsewhere_or_askew_is_refused(frame: str, q: tuple[float, float, float, float]) -> None:
     with pytest.raises(ValueError, match=r"frame|orientation"):
-        standing_pose(frame, 0.0, 0.0, q)
+        standing_pose(stamped(frame, 0.0, 0.0, q))
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import delivers_at_home, poses_for
-from common.config import config_dir
+from common.config import config_dir, load
 from common.floor_plan import FloorPlan, Wall
 from common.geometry import Rectangle, quat_yaw
 from common.household import told
@@ -16,7 +16,7 @@ from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.goals import UNLISTED, Goals
 from services.navigation.motion.path_follower import PathFollower
-from services.navigation.places import Places, load_places
+from services.navigation.places import Places, PlacesFile
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
@@ -108,7 +108,7 @@ def test_what_is_brought_is_put_down_from_home_where_its_surface_is_before_it(
     x, y, theta = home
     scene = msgspec.structs.replace(SCENE, home=msgspec.structs.replace(SCENE.home, x=x, y=y, theta=theta))
     assert delivers_at_home(scene) is expected
-    goals = Goals(scene, Places(scene, load_places(config_dir())), CONFIG)
+    goals = Goals(scene, Places(scene, load("places", PlacesFile, config_dir(), {})), CONFIG)
     ((_, pose), *others) = goals.place(scene.delivery)
     assert (pose == home) is expected and bool(others) is not expected
     assert delivers_at_home(msgspec.structs.replace(scene, delivery=""))
@@ -126,7 +126,7 @@ def test_a_chair_before_the_only_side_that_is_listed_is_gone_round_to_another() 
 
 
 def test_other_sides_come_after_those_that_are_listed_and_not_through_a_wall() -> None:
-    goals = Goals(SCENE, Places(SCENE, load_places(config_dir())), CONFIG)
+    goals = Goals(SCENE, Places(SCENE, load("places", PlacesFile, config_dir(), {})), CONFIG)
     desk = next(r for r in SCENE.receptacles if r.name == "desk")
     listed = poses_for(desk.center[:2], desk, CONFIG.stand_off, CONFIG.edge_distance)
     choices = goals.place("desk")

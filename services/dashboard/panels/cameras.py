@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2, quat_matrix
+from common.geometry import Pose2, quat_matrix, yaw_matrix
 from common.picture_requests import PICTURES, PictureRequests
 from services.dashboard.config import DashboardConfig
 from services.dashboard.panels.widgets import Panels
@@ -52,9 +52,7 @@ def boxes(
 ) -> list[tuple[str, tuple[float, float, float, float]]]:
     """Label and (left, top, right, bottom) in pixels of every believed object that is in the picture and in sight."""
     depth = np.frombuffer(image.depth, "<u2").reshape(image.height, image.width) / 1000.0
-    turn = quat_matrix(image.orientation)
-    c, s = np.cos(base[2]), np.sin(base[2])
-    level = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn, level = quat_matrix(image.orientation), yaw_matrix(base[2])
     found = []
     for one in objects:
         half = np.maximum(np.array(one.size) / 2, 0.01)

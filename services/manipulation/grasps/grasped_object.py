@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.geometry import yaw_matrix
 from common.kinds import kind_of
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.grasp import Grasp
@@ -83,8 +84,7 @@ class GraspedObject:
 
     def box(self) -> tuple[Array, Array]:
         """Half extents (3,) and centre (3,) [m] of the object's collision box in the frame of the pinch point."""
-        c, s = np.cos(self.yaw), np.sin(self.yaw)
-        turned = self.rotation.T @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+        turned = self.rotation.T @ yaw_matrix(self.yaw)
         half = np.abs(turned) @ (np.array(self.size) / 2) - SHRINK
         center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
         return np.maximum(half, LEAST_HALF), center

@@ -7,6 +7,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from common.geometry import yaw_matrix
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.slices import slices
 from services.manipulation.grasps.target import Target
@@ -37,7 +38,7 @@ def surface(target: Target) -> Array:
     measured of them; what is irregular and seen from its front is completed slice by slice; of anything else what was
     seen from above is taken to reach down to what it rests on.
     """
-    return np.array(target.position) + _maker(target)(target) @ _yaw(target.yaw).T
+    return np.array(target.position) + _maker(target)(target) @ yaw_matrix(target.yaw).T
 
 
 def _maker(target: Target) -> Callable[[Target], Array]:
@@ -81,14 +82,9 @@ def _thinner(target: Target) -> bool:
     return upper and bool((np.ptp(seen[:, :2], axis=0) < 2 * half[:2] - THINNER).any())
 
 
-def _yaw(yaw: float) -> Array:
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
 def own_points(target: Target) -> Array:
     """What was seen (n, 3), along the object's own axes; empty when nothing was."""
-    return np.empty((0, 3)) if target.points is None else target.points @ _yaw(target.yaw)
+    return np.empty((0, 3)) if target.points is None else target.points @ yaw_matrix(target.yaw)
 
 
 def _steps(low: float, high: float) -> Array:
@@ -115,7 +111,7 @@ def _turned(target: Target) -> Array:
 def away(target: Target) -> Array:
     """The level direction (2,) from the robot to an object, along the object's own axes."""
     at = np.array(target.position[:2])
-    found: Array = at @ _yaw(target.yaw)[:2, :2] / np.linalg.norm(at)
+    found: Array = at @ yaw_matrix(target.yaw)[:2, :2] / np.linalg.norm(at)
     return found
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.geometry import yaw_matrix
 from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import Leg, connect
@@ -152,8 +153,7 @@ def _set_down(
     # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
     level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
     delta = heading - np.arctan2(level[1], level[0])
-    c, s = np.cos(delta), np.sin(delta)
-    spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+    spin = yaw_matrix(float(delta))
     target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
     above = target.moved(np.array([0.0, 0.0, 0.08]))
     arm.hold(None)

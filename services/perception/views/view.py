@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array, Pose2, quat_matrix
+from common.geometry import Array, Pose2, quat_matrix, yaw_matrix
 from common.messages import Rgbd
 from services.perception.views import colour
 
@@ -98,8 +98,7 @@ def view_of(image: Rgbd, base: Pose2) -> View:
     depth = np.frombuffer(image.depth, "<u2")
     if rgb.size != h * w * 3 or depth.size != h * w:
         raise ValueError(f"an image of {w} x {h} with {rgb.size} bytes of colour and {depth.size} depths")
-    c, s = np.cos(base[2]), np.sin(base[2])
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = yaw_matrix(base[2])
     return View(
         rgb=rgb.reshape(h, w, 3),
         depth=(depth.reshape(h, w) * np.float32(0.001)),
