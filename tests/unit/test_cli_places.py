@@ -41,6 +41,7 @@ class FakeLink:
 
 @pytest.fixture
 def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
+    parser()  # imports every command, while `Watch` is what it is
     fake = FakeLink()
 
     @contextmanager
