@@ -17,7 +17,7 @@ from services.perception.segments.air import hangs
 from services.perception.segments.colours import IN_A_CROWD, LEAST_SHARE, by_colour
 from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
-from services.perception.segments.segment import Segment, renumbered
+from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
 from services.perception.shapes.measurement import Measurement
 from services.perception.shapes.primitives import quantile
