@@ -248,6 +248,15 @@ def test_a_typo_in_a_scene_is_named(tmp_path: Path, change: tuple[str, str], exp
     assert expected in str(error.value)
 
 
+def test_what_the_robot_mapped_itself_is_taken_as_it_was_measured(tmp_path: Path) -> None:
+    text = (SCENES / "minimal.toml").read_text()
+    (tmp_path / "household.toml").write_text(text.replace("center = [2.30, 0.0", "center = [2.95, 0.0"))
+    with pytest.raises(SceneError, match="outside of low"):
+        load_household(str(tmp_path / "household.toml"))
+    (tmp_path / "map.yaml").touch()
+    assert load_household(str(tmp_path / "household.toml")).receptacles
+
+
 def test_a_surface_has_the_sides_that_are_free_where_the_file_leaves_them_out(tmp_path: Path) -> None:
     """As a person does who draws a plan: of a table against a wall the other three; the yard outside does not count."""
     text = (

@@ -24,6 +24,8 @@ _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(
 _SEVERAL = re.compile(
     r"^(?:(?:i want|bring(?: me)?|get(?: me)?|give me|take|well|oh|yes) )*(?:both|all|each)\b(?! the same| right)"
 )
+_WHERE_IT_IS = re.compile(r"^(?:where|what|which)\b.* (?:is|are|stands|lies|belongs)$")
+"""A relative clause, which says which one: `where the apple is`."""
 SURE, FIRM = 0.71, 0.95
 """Least probability of a choice that no wording makes, and of one where something is passed over (chosen on lists left
 out)."""
@@ -37,7 +39,8 @@ def chosen(
     Another colour of the same kind names one that was not among the options.
     """
     said = _SAID_BEFORE.sub("", normalise(answer)).strip()
-    if not said or _SEVERAL.match(said) or is_asked(tuple(said.split())):
+    asks = is_asked(tuple(said.split())) and not _WHERE_IT_IS.match(said)
+    if not said or _SEVERAL.match(said) or asks:
         return None  # more than one, or a question of one's own
     if (found := _singled_out(answer, options, known, household)) or household is None:
         return found
