@@ -263,7 +263,7 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     answers = all(name in ("answer", "say") for name, _ in wanted)
     plans = [[*found.looks, *found.steps], found.steps]
     tag, _, about = sentence.context.partition(":")
-    held = about if tag == "held" else ""
+    held = after(tag, about)[1]
     done = [_acts(plan, held) for plan in plans]
     done += [_acts(plan, held, looks=False) for plan in ([] if answers else plans)]
     if len(wanted) <= _FEW:

@@ -246,7 +246,8 @@ async def _waiting_and_stop(client: "Client") -> None:
     assert short["outcome"] == "under_way"
     assert "stopped" in await called(client, "stop", reason="a test")
     status = await called(client, "status")
-    assert status["stopped"] and status["stop_reason"] == "a test" and status["mission"] is None
+    assert status["stopped"] and status["stop_reason"] == "a test"
+    await until(lambda: _nothing_under_way(client))
     assert "not ready" in await refused(client, "go", place="back")
 
 
@@ -254,6 +255,10 @@ async def until(holds: Callable[[], Awaitable[bool]]) -> None:
     with anyio.fail_after(60):
         while not await holds():
             await anyio.sleep(0.05)
+
+
+async def _nothing_under_way(client: "Client") -> bool:
+    return (await called(client, "status"))["mission"] is None
 
 
 async def _state(client: "Client", wanted: str) -> bool:

@@ -67,6 +67,7 @@ LEAST = {
     "36": Least(0.5, 0.72, 42),
     "37": Least(0.61, 0.87, 13),
     "38": Least(0.61, 0.81, 14),
+    "39": Least(0.46, 0.75, 30),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 

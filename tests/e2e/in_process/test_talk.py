@@ -15,7 +15,7 @@ def test_what_was_brought_is_put_back_where_it_was(tmp_path: Path) -> None:
         assert "red mug" in home.tell("take a look around", 90.0).reason
         assert home.tell("bring me the red mug", 300.0).outcome == "delivered"
         assert home.place_of("red mug") == "delivery tray"
-        assert "bring me the red mug" in home.tell("what did you just do", 30.0).reason
+        assert "bring you the red mug" in home.tell("what did you just do", 30.0).reason
         assert home.tell("put it back where it was", 300.0).outcome == "delivered"
         assert home.place_of("red mug") == "living table"
     finally:
