@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 
 from common.language.log_linear import BITS, LogLinear, Option
+from services.planner.semantic.network import Network
 
 Array = npt.NDArray[Any]
 RIDGE = 2.0
@@ -43,7 +44,7 @@ def arguments(doc: str | None) -> ArgumentParser:
     return parser
 
 
-def save(model: LogLinear, path: Path, learnt_from: int) -> None:
+def save(model: LogLinear | Network, path: Path, learnt_from: int) -> None:
     """Write a model beside the code that reads it."""
     model.save(path)
     print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {learnt_from} sentences")

@@ -7,7 +7,6 @@ It takes about an hour on two cores, and torch, which nothing else needs and no 
 .venv/bin/pip install torch --index-url https://download.pytorch.org/whl/cpu
 """
 
-import argparse
 import importlib.util
 import os
 import re
@@ -18,6 +17,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
+from bench import log_linear
 from common.plan_rules import known_world
 from services.planner.grammar.chunks import Chunk
 from services.planner.grammar.vocabulary import Vocabulary
@@ -145,18 +145,14 @@ def _report(apart: Sequence[str]) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--without", nargs="*", default=[], metavar="LIST", help="lists that nothing is learnt from")
-    args = parser.parse_args()
+    args = log_linear.arguments(__doc__).parse_args()
     if importlib.util.find_spec("torch") is None:
         print("torch is missing: python -m bench.semantic --help tells where it is to be had", file=sys.stderr)
         return 2
     from bench.semantic_network import learn
 
     rows = examples({n: of for n, of in all_lists().items() if n not in args.without}, os.cpu_count() or 1)
-    path = Path(ranker.__file__).parent / ranker.WEIGHTS
-    learn(rows).save(path)
-    print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {len(rows)} sentences")
+    log_linear.save(learn(rows), Path(ranker.__file__).with_name(ranker.WEIGHTS), len(rows))
     _report(args.without)
     return 0
 

@@ -60,7 +60,7 @@ class Names:
         for at, c in enumerate(row.meant):
             roles += [(at, n, self.slots.setdefault(name, len(self.slots))) for n, name in slots(c, row.found)]
             if c.span is not None:
-                spans.append((at, text.words[c.span[0]][0], text.words[c.span[1] - 1][1] - 1))
+                spans.append((at, *text.ends(c.span)))
         return Prepared(text, forms, roles, spans, row.right)
 
 

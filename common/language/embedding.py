@@ -5,7 +5,6 @@ from functools import lru_cache
 import numpy as np
 
 from common.language.normalise import REMEMBERED
-from common.language.transformer import SIZE as SIZE
 from common.language.transformer import Floats, tokenizer, transformer
 
 SCALE = np.float32(3.0)
@@ -16,7 +15,7 @@ LONGEST = 128
 
 @lru_cache(REMEMBERED)
 def embedded(text: str) -> Floats:
-    """The embedding of a text, the mean over its word pieces: (SIZE,), of length 1."""
+    """The embedding of a text, the mean over its word pieces: (transformer.SIZE,), of length 1."""
     pieces = tokenizer().encode(text).ids
     if len(pieces) > LONGEST:
         pieces = [*pieces[: LONGEST - 1], pieces[-1]]
@@ -25,5 +24,5 @@ def embedded(text: str) -> Floats:
 
 
 def beside_features(*texts: str) -> Floats:
-    """The embeddings of texts as a model reads them beside its features: (len(texts) * SIZE,), each of length SCALE."""
+    """The embeddings of n texts as a model reads them beside its features: (n * SIZE,), each of length SCALE."""
     return np.concatenate([embedded(text) for text in texts]) * SCALE

@@ -13,12 +13,12 @@ from zlib import crc32
 import numpy as np
 import numpy.typing as npt
 
+from common.language.eight_bits import in_8_bits
+
 BITS = 18
 """Features are counted modulo 2**BITS (chosen: 100 000 features are seen in tests/data, so few share a number)."""
 UNKNOWN = "<unknown>"
 """What stands for every word that is not among those learnt from."""
-_STEPS = 127
-"""Steps of an 8-bit weight."""
 
 Floats = npt.NDArray[np.float32]
 
@@ -49,8 +49,7 @@ class LogLinear:
         """Write it with weights of 8 bits."""
         table: dict[str, npt.NDArray[np.generic]] = {}
         for name, weights in (("sparse", self._sparse), ("dense", self._dense)):
-            step = np.float32(np.abs(weights).max() / _STEPS)
-            table |= {name: np.round(weights / step).astype(np.int8), f"{name}_step": np.asarray(step)}
+            table[name], table[f"{name}_step"] = in_8_bits(weights)
         for name, listed in (("forms", list(self._row)), ("words", sorted(self.words))):
             table[name] = np.frombuffer(" ".join(listed).encode(), np.uint8)
         np.savez_compressed(path, **table)  # type: ignore[arg-type]

@@ -7,8 +7,9 @@ import pytest
 
 from bench.log_linear import Example, known_words, learn
 from common.language import transformer
-from common.language.embedding import SIZE, embedded
+from common.language.embedding import embedded
 from common.language.log_linear import LogLinear, Option, hashed
+from common.language.transformer import SIZE
 
 
 def test_texts_of_like_meaning_lie_close_together() -> None:

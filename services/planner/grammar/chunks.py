@@ -27,14 +27,13 @@ _NEVER_FIRST = NO_NOUN - DETERMINERS - {"all", "both", "every", "each"}
 class Chunk(NamedTuple):
     """Words from `begin` to before `end`, which name a thing, a place or a length of time; `text` has its article.
 
-    `new`: nobody has listed or seen such a thing. The text of a time is in seconds.
+    The text of a time is in seconds.
     """
 
     kind: Literal["thing", "spot", "time"]
     text: str
     begin: int
     end: int
-    new: bool = False
 
 
 def chunks(
@@ -87,7 +86,7 @@ def _unlisted(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
         name = words[at + 1 : end]
         is_told = len(name) > 1 and any(word.endswith(("s", "ed")) for word in name[1:])
         if not is_told and LIVING.isdisjoint(name) and vocabulary.unlisted(name) is not None:
-            return Chunk("thing", " ".join(words[at:end]), at, end, new=True)
+            return Chunk("thing", " ".join(words[at:end]), at, end)
     return None
 
 
@@ -110,7 +109,7 @@ def _bare(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
         return None
     lasts = any(_time(words, i) for i in range(at, end))
     known = not lasts and 0 < len(name) <= LONGEST_NAME and vocabulary.unlisted(name, determined=False) is not None
-    return Chunk("thing", f"the {' '.join(name)}", at, end, new=True) if known else None
+    return Chunk("thing", f"the {' '.join(name)}", at, end) if known else None
 
 
 def _plain(phrase: Phrase) -> bool:

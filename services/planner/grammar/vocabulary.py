@@ -36,7 +36,6 @@ class Vocabulary(Spots):
         self.new_nouns = False
         self.phrases: dict[tuple[bool, Words], Any] = {}
         household, known = world.household, [*world.specs, *world.objects]
-        self.holds = world.held is not None
         self.before = normalise(world.history.last.command) if world.history.last is not None else ""
         self.situation = _situation(world)
         words = household.words

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from common.language.eight_bits import in_8_bits
 from common.language.normalise import Words
 from common.language.transformer import CLS, SEP, Adapter, Floats, transformer, word_pieces
 from services.planner.grammar.chunks import Chunk
@@ -19,8 +20,6 @@ from services.planner.semantic.forms import Candidate
 
 LONGEST = 200
 """Most word pieces that are read (chosen: bounds the time; 60 words have about 80)."""
-_STEPS = 127
-"""Steps of an 8-bit weight."""
 
 
 class Read(NamedTuple):
@@ -34,6 +33,10 @@ class Read(NamedTuple):
     second: int
     words: list[tuple[int, int]]
     things: list[tuple[int, int]]
+
+    def ends(self, span: tuple[int, int]) -> tuple[int, int]:
+        """The first and the last piece of the words from number `span[0]` to before `span[1]`."""
+        return self.words[span[0]][0], self.words[span[1] - 1][1] - 1
 
 
 def read(words: Words, found: Sequence[Chunk], situation: Words) -> Read:
@@ -83,6 +86,7 @@ class Network:
         states = transformer().states(text.pieces, text.second, self._adapters)
         form = self._head("form", np.concatenate([states[text.second :].mean(axis=0), states[0]]))
         slot = [self._head("slot", states[begin:end].mean(axis=0)) for begin, end in text.things]
+        first, last = self._head("first", states), self._head("last", states)
         scores = np.zeros(len(meant), np.float32)
         for at, candidate in enumerate(meant):
             row = self._form.get(candidate.form)
@@ -93,15 +97,14 @@ class Network:
                 slot[of][self._slot[n]] for of, n in slots(candidate, found) if n in self._slot
             )
             if candidate.span is not None:
-                begin, end = candidate.span
-                scores[at] += self._head("first", states[text.words[begin][0]])[row]
-                scores[at] += self._head("last", states[text.words[end - 1][1] - 1])[row]
+                begin, end = text.ends(candidate.span)
+                scores[at] += first[begin][row] + last[end][row]
         scores -= scores.max()
         return np.asarray(scores - np.log(np.exp(scores).sum()), np.float32)
 
-    def _head(self, name: str, state: Floats) -> Floats:
+    def _head(self, name: str, states: Floats) -> Floats:
         weight, bias = self._heads[name]
-        return np.asarray(weight @ state + bias, np.float32)
+        return np.asarray(states @ weight.T + bias, np.float32)
 
     @classmethod
     def load(cls, path: Traversable) -> "Network":
@@ -128,8 +131,7 @@ class Network:
             arrays |= {f"{name} weight": weight, f"{name} bias": bias}
         table: dict[str, np.ndarray] = {}
         for name, weights in arrays.items():
-            step = np.float32(max(np.abs(weights).max(), 1e-9) / _STEPS)
-            table |= {name: np.round(weights / step).astype(np.int8), f"{name} step": np.asarray(step)}
+            table[name], table[f"{name} step"] = in_8_bits(weights)
         for name, listed in (("forms", self.forms), ("slots", self.slots)):
             table[name] = np.frombuffer("\n".join(listed).encode(), np.uint8)
         np.savez_compressed(path, **table)  # type: ignore[arg-type]
