@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from common.sound import read_wav
+from common.sound import Samples, read_wav
 from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.voice import Floats, Samples, hum, loudness, reverberant, with_noise, with_silence
+from evaluation.person.voice import Floats, hum, loudness, reverberant, with_noise, with_silence
 
 KINDS = ("white", "hum", "room", "babble", "drive")
 """Hiss; the hum of a room (1/f); with its echoes; others who talk; the robot's fan and drive, at their own level."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Pose2 = tuple[float, float, float]
 IDENTITY_POSE: Pose2 = (0.0, 0.0, 0.0)
+"""Where a frame lies in itself [m, m, rad]."""
 SIDES: tuple[tuple[float, float], ...] = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 """Of a rectangle, as unit steps outwards in its own frame."""
 Number = TypeVar("Number", float, NDArray[np.floating])

@@ -29,7 +29,8 @@ CHUNK = 512 * 1024
 BULK = {t.key for t in topics.TABLE if t.bulk}
 RAW = "#undecodable"
 ALIVE_SCHEMA = b'{"title":"Alive","type":"object","properties":{"alive":{"type":"boolean"}}}'
-NANO = 1_000_000_000  # nanoseconds in a second
+NANO = 1_000_000_000
+"""Nanoseconds in a second."""
 _TORN = (EOFError, struct.error, zlib.error, ZstdError, McapError, ValueError, MemoryError)
 
 

@@ -11,13 +11,10 @@ from common import config
 from common.bus.port import Outside
 from common.bus.session import BusError, NoRouter, default_connect, open_session
 from common.household import load_household
-from common.process.host import StopSignal, die_with_parent
+from common.process.host import BAD_CONFIGURATION, StopSignal, die_with_parent
 from common.process.service_process import Process, ServiceClass
 from common.scene import SceneError, load_scene
 from common.time.clock import SimClock, WallClock
-
-BAD_CONFIGURATION = 2
-"""Exit status, fixed by the interface."""
 
 
 def main(kind: ServiceClass) -> None:

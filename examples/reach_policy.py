@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot.model import ARM
+from common.robot.joints import ARM
 
 Array = NDArray[np.float64]
 ABOVE, LIFT = 0.06, 0.06

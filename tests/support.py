@@ -16,7 +16,7 @@ import zenoh
 
 from cli.processes.ports import free_port
 from common.bus.session import open_session
-from common.robot.model import ARM, BASE
+from common.robot.joints import ARM, BASE
 
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parent.parent

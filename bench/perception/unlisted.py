@@ -32,6 +32,7 @@ VIEWED: dict[str, Callable[[int], Case]] = {
 NEAR, NOTHING = 0.05, 0.09
 """Distance [m] on the floor plan within which an object was found, and beyond which from all a detection is of none."""
 VIEWS_PER_WORLD = 4
+"""Standing places in each world [count]; chosen."""
 LEANS = 0.7
 """Tilt [rad] from which an object does not stand."""
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from common.geometry import Pose2, yaw_matrix
 from common.rendering.renderer import Renderer
+from common.robot.joints import ARM, BASE
 from common.scene import Receptacle, Scene, body_name, load_scene
 from services.camera.sensor import StereoCamera
 from services.perception.detect import ClassicalDetector
@@ -64,8 +65,7 @@ def take(
 ) -> View:
     """The view of the head camera with the base at `pose`, by any camera of the kind."""
     model, data = renderer.model, renderer.data
-    names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
-    for name, value in zip(names, (*pose, *own().home), strict=True):
+    for name, value in zip((*BASE, *ARM), (*pose, *own().home), strict=True):
         data.qpos[model.joint(name).qposadr[0]] = value
     renderer.load(data.qpos.copy().tobytes(), b"")
     rgb, depth = renderer.rgbd("head", args.width, args.height)

@@ -18,7 +18,7 @@ from common import topics
 from common.files.atomic_file import replace
 from common.geometry import Array
 from common.robot import calibration
-from common.robot.model import ARM
+from common.robot.joints import ARM
 
 SPEED = 0.6
 """Of the fastest joint [rad/s]; chosen: slow enough to be watched."""

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 from cli.cameras.shot import Mount, Shot, rays
 from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
-from common.robot.model import ARM, RobotKinematics, arm_limits, home_arm, subtree
+from common.robot.joints import ARM
+from common.robot.model import RobotKinematics, arm_limits, home_arm, subtree
 
 SMOOTH, JUMP = 7, 0.03
 """Side [px] of the window over which a surface's normal is taken, and change of depth [m] within it that is an edge."""

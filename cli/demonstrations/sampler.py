@@ -6,7 +6,7 @@ from typing import Any
 
 from common import messages as m
 from common.demonstration import STATE
-from common.robot.model import ARM
+from common.robot.joints import ARM
 
 FRESH = 0.25
 """Age [s] from which a command counts no more: the silence after which the robot holds."""

@@ -8,10 +8,9 @@ import numpy as np
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from common import messages as m
 from common import topics
+from common.robot.joints import ARM, JOINTS
 from common.topic import Topic
 
-ARM = tuple(f"joint_{i}" for i in range(1, 8))
-JOINTS = ("base_x", "base_y", "base_yaw", *ARM, "gripper")
 STEP, SPEED = 0.15, 0.12
 """Length of a commanded move [m] and speed [m/s]; chosen: small enough for a room that nobody cleared."""
 SILENT, REST = 0.9, 0.01
@@ -79,7 +78,7 @@ def missing_in(mjcf: str) -> str:
     """What a description lacks for inverse kinematics, collision checks and masks in pictures; "" if nothing."""
     import mujoco
 
-    from common.robot.model import ARM, HOME, SIDES, Hand, pads
+    from common.robot.model import HOME, SIDES, Hand, pads
 
     try:
         model = mujoco.MjModel.from_xml_string(mjcf)

@@ -5,6 +5,7 @@ import msgspec
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 IDENTITY: Quat = (1.0, 0.0, 0.0, 0.0)
+"""No rotation, as (w, x, y, z)."""
 
 
 class Message(msgspec.Struct, kw_only=True):

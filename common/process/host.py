@@ -12,9 +12,12 @@ from types import FrameType
 
 _PR_SET_PDEATHSIG = 1
 """Option of Linux's prctl(2): the signal that comes when the parent dies."""
+BAD_CONFIGURATION = 2
+"""Exit status of a process that refuses its configuration, fixed by the interface: starting it again does not help."""
 SILENCE = 3.0
 """Time without acknowledgement after which a connection is given up [s]: longer than the lease in config/zenoh."""
 _PAGE_MB = resource.getpagesize() / 2**20
+"""Size of a page of memory [MB], in which the kernel counts."""
 
 
 class StopSignal:

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 _NO_COLOUR = (0.5, 0.5, 0.5, 1.0)
 """The RGBA of a geom that was given none (MuJoCo's XML reference, body/geom)."""
+HIDDEN_GROUP = 4
+"""First geom group that is not drawn: collision shapes are in it and above [MuJoCo group]."""
 SKY = (200, 215, 232)
 """RGB of what a camera sees where nothing is: a blue between those of the scenes' sky."""
 

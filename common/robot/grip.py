@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 from common.messages import JointStates
+from common.robot.joints import GRIPPER
 
-GRIPPER = "gripper"
-"""Name of the gripper's joint in `joint_states`: its position is the width between the pads [m]."""
 OPENING = 0.085
 """Width between the open pads [m]: the stroke of the Robotiq 2F-85 (data sheet)."""
 EMPTY_WIDTH = 0.002

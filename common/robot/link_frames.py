@@ -8,9 +8,8 @@ import numpy as np
 from common import messages as m
 from common.messages.base import Quat
 from common.robot.frames import BASE_LINK, FramePose
-from common.robot.model import ARM, RobotKinematics
-
-BASE_BODY = "base"
+from common.robot.joints import ARM, BASE_BODY
+from common.robot.model import RobotKinematics
 
 
 class LinkFrames:

@@ -6,9 +6,8 @@ import mujoco
 import numpy as np
 
 from common.geometry import Array
+from common.robot.joints import ARM
 
-ARM = tuple(f"joint_{i}" for i in range(1, 8))
-BASE = ("base_x", "base_y", "base_yaw")
 HOME = "home"
 SIDES = ("left", "right")
 # A gripper whose fingers do not simply slide says where its joints stand for a few widths, widest first.

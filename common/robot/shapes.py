@@ -6,10 +6,9 @@ import mujoco
 
 from common.geometry import quat_matrix
 from common.messages.base import Quat, Vec3
-from common.robot.link_frames import BASE_BODY, link_name
-
-HIDDEN_GROUP = 4
-"""First MuJoCo geom group that is not drawn: collision shapes are in it and above."""
+from common.rendering.looks import HIDDEN_GROUP
+from common.robot.joints import BASE_BODY
+from common.robot.link_frames import link_name
 
 
 class Shape(NamedTuple):

@@ -13,7 +13,8 @@ import numpy as np
 from common.geometry import quat_matrix
 from common.messages.base import IDENTITY
 from common.robot.frames import FramePose
-from common.robot.link_frames import BASE_BODY, link_name
+from common.robot.joints import BASE_BODY
+from common.robot.link_frames import link_name
 from common.robot.shapes import Shape, shapes
 
 PIVOT = "_pivot"

@@ -19,6 +19,7 @@ SIZES = {"box": ((0.30, 0.60), (0.25, 0.45), (0.25, 0.60)), "chair": ((0.40, 0.4
 LIGHT, GONE = ("chair", "plant", "television"), 0.4
 """Furniture that people carry about, by how its name begins, and the share of it that is no longer in the home."""
 PEOPLE = (1, 2)
+"""Fewest and most people who walk about [count]: a small household."""
 SPEED = (0.5, 0.9)
 """Walking speed at home [m/s]: below the 1.3 of people in the street."""
 SPOTS = (2, 4)
@@ -28,6 +29,7 @@ STRIDE = 10
 NOT_AT = 1.2
 """Distance [m] from the robot's start within which nobody begins and nothing stands."""
 TRIES = 40
+"""Draws for each thing and each person [count]; chosen: what has found no room by then is left out."""
 
 
 def aged(home: Scene, rng: np.random.Generator) -> Scene:

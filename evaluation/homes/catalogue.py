@@ -15,6 +15,7 @@ CLOTH: Rgba = (0.38, 0.45, 0.54, 1.0)
 WHITE: Rgba = (0.88, 0.88, 0.87, 1.0)
 DARK: Rgba = (0.12, 0.12, 0.14, 1.0)
 LEAF: Rgba = (0.25, 0.45, 0.25, 1.0)
+"""Colours (red, green, blue, opacity, 0 to 1); drawn, for looks alone."""
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ CELL = 0.05
 PASSAGE = ROOM + 0.05
 """Clearance [m] of the base's centre on a way that counts as free: navigation's and one cell."""
 SIDES = ((0, -1), (1, 0), (-1, 0), (0, 1))
+"""Unit steps (x, y) from an area's middle to before each of its sides."""
 
 
 class Floor:

@@ -11,9 +11,10 @@ from common import topics
 from common.bus.port import Io, Job
 from common.floor_plan import Vec3
 from common.scene import Scene
+from common.sound import RATE, Samples
 from evaluation.case import Case
 from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.voice import RATE, Samples, loudness, utter
+from evaluation.person.voice import loudness, utter
 from judge.evidence import Sample
 from judge.words import plain
 

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.person.voice import RATE, Floats, Samples, hum
+from common.sound import RATE, Samples
+from evaluation.person.voice import Floats, hum
 
 FAN, DRIVE = -25.0, -12.0
 """Levels at the microphone [dB relative to speech], of the fan and of the drive at `FULL` speed; chosen: 35 dB(A) of a

@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
+from common.sound import RATE, Samples
 from evaluation.case import Speaker
 from services.speech.speak.voice import Voice
 
-RATE = 16000
-"""Samples per second that speech takes."""
 LEAD, TAIL = 0.3, 1.2
 """Silence [s] before and after a sentence."""
 WAKE, GAP = "hey jarvis", 0.25
@@ -18,7 +17,6 @@ WAKE, GAP = "hey jarvis", 0.25
 ECHO, DIRECT = 0.3, 12.0
 """Reverberation of a furnished living room: decay by 60 dB in 0.3 s (ISO 3382-2 finds 0.3 to 0.6 s), and the level of
 the direct sound over the echoes at one metre [dB]."""
-Samples = NDArray[np.int16]
 Floats = NDArray[np.float64]
 
 

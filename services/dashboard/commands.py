@@ -8,10 +8,9 @@ from common.bus.port import Io
 from common.geometry import Pose2
 from common.mission_log.transcript import Transcript
 from common.naming.part_names import kind_named
+from common.sound import RATE
 from services.dashboard.scene.picking import Picked
 
-RATE = 16000
-"""Samples per second that speech takes (`audio/pcm`)."""
 CHUNK = RATE // 10 * 2
 """Bytes of 100 ms of int16, the piece that speech recognition takes at a time."""
 TRAILING = 15

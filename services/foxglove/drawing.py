@@ -28,6 +28,7 @@ LEVELS = {"debug": "Debug", "info": "Info", "warning": "Warning", "error": "Erro
 Colour = tuple[float, float, float, float]
 WALL: Colour = (0.85, 0.85, 0.82, 0.35)
 RECEPTACLE: Colour = (0.45, 0.60, 0.75, 1.0)
+"""Colours (red, green, blue, opacity, 0 to 1); chosen: through walls one sees the robot."""
 SHEET = 0.01
 """Thickness of what shows where objects may stand [m]."""
 

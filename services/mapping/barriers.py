@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import FOOTPRINT
+from common.files.map_file import OCCUPIED
 from common.floor_plan import Vec2, Wall
 from common.geometry import from_segment
-from services.mapping.grid import OCCUPIED, RESOLUTION, Cells, Grid
+from services.mapping.grid import RESOLUTION, Cells, Grid
 
 PANE = 2.5
 """Distance [m] of two places up to which one thing held the robot up, and up to which from there the frame of its pane

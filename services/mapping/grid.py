@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
+from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 from common.geometry import Array, Pose2
 from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
@@ -19,7 +20,6 @@ Cells = NDArray[np.bool_]
 Index = tuple[NDArray[np.intp], NDArray[np.intp]]
 RESOLUTION = 0.05
 """Of a cell [m]: that of navigation's costmap."""
-FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 HIT_SHARE = 0.10
 """Share of scans that must have hit a cell, of those that hit or passed it, for it to count as occupied: rays that
 graze a wall at 10 degrees pass six of its cells before they end."""

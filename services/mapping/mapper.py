@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
+from common.files.map_file import OCCUPIED
 from common.floor_plan import Vec2
 from common.geometry import Pose2, compose, inverse
 from services.mapping.barriers import Met, panes, shut
 from services.mapping.depth import CameraModel, Picture
-from services.mapping.grid import OCCUPIED, Grid
+from services.mapping.grid import Grid
 from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
 from services.mapping.trajectory import Trajectory

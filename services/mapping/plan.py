@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from common.files.map_file import FREE
 from common.floor_plan import BIN_WALL, LEG, LEG_INSET, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
 from common.free_sides import free_sides
 from common.free_sides import reached as reached_cells
 from common.geometry import Array, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins
-from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
+from services.mapping.grid import RESOLUTION, Cells, Grid
 from services.mapping.rooms import find_rooms
 from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
 from services.mapping.walls import find_walls

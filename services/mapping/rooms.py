@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from common.files.map_file import FREE, OCCUPIED
 from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.bins import BIN_SIDE
-from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
+from services.mapping.grid import RESOLUTION, Grid
 
 DOOR = 0.42
 """Half of the width [m] up to which a passage is a door where no two jambs tell, in a corner: corridors are wider."""

@@ -16,10 +16,11 @@ from scipy import ndimage
 from scipy.sparse import csgraph
 
 from common.approach import FOOTPRINT
+from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 from common.floor_plan import Vec2
 from common.geometry import Array, Pose2
 from common.grid_graph import graph_of
-from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
+from services.mapping.grid import RESOLUTION, Cells, Grid, Index
 
 CLEARANCE = FOOTPRINT + RESOLUTION / 2
 """Distance [m] from the edge of what is not free that a pose has: the footprint and half of a cell; a way has a cell

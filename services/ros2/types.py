@@ -7,7 +7,8 @@ from common.bus.validation import LIMIT
 from common.messages.base import Quat, Vec3
 from common.robot.frames import FramePose
 
-NANO = 1_000_000_000  # nanoseconds in a second
+NANO = 1_000_000_000
+"""Nanoseconds in a second."""
 MISSING = "the ROS 2 gateway needs the package rosbags: pip install 'tidybot-zenoh[ros2]'"
 
 

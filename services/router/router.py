@@ -13,13 +13,10 @@ from pathlib import Path
 import zenoh
 
 from common.bus.session import endpoints
-from common.process.host import SILENCE, StopSignal, die_with_parent, limit_silence
+from common.process.host import BAD_CONFIGURATION, SILENCE, StopSignal, die_with_parent, limit_silence
 from common.security import access, keys
 from common.security.certificate import Identity
 from common.security.zenoh_config import ROUTER_CONFIG, as_json, secure, subjects, value_of
-
-BAD_CONFIGURATION = 2
-"""Exit status, fixed by the interface."""
 
 
 def main() -> None:

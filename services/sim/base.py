@@ -17,7 +17,8 @@ PUSHED = 0.03
 """For how long [s] that has to be so: three readings, longer than a knock of the arm."""
 _STILL = 0.02
 """Speed [m/s] below which the base rests."""
-STREAM = 5  # targets in a row
+STREAM = 5
+"""Targets in a row [count] from which they are a stream that is followed, not goals to stop at."""
 
 
 @dataclass

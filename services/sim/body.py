@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from common.robot.model import ARM, BASE, Hand, arm_limits, pads, subtree
+from common.robot.joints import ARM, BASE
+from common.robot.model import Hand, arm_limits, pads, subtree
 from common.time.lockstep import DT
 from services.sim.contacts import Contacts
 from services.sim.model import Robot

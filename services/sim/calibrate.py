@@ -8,9 +8,8 @@ import numpy as np
 
 from common.body_extent import corners
 from common.geometry import Array
+from common.robot.joints import ARM, BASE
 from common.robot.model import (
-    ARM,
-    BASE,
     HAND_ADVANCES,
     HAND_JOINTS,
     HAND_LENGTHS,

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from common.geometry import Array
 from common.rendering.raycast import TAKES_NORMAL
+from common.robot.joints import BASE_BODY
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 from services.sim.things.primitives import GROUP
 
 SEEN = 0
 """A group of geoms that lidars see."""
-BASE_BODY = "base"
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 """Rays of a turn [count] and nearest and farthest range [m], as small lidars for indoors have them."""
 

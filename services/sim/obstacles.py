@@ -13,8 +13,8 @@ from common.scene import Obstacle, Scene
 from services.sim.pedestrians import Pedestrian
 
 PREFIX = "obstacle "
-# A polite one stays this far from the robot's middle, beside its own radius [m].
 DISTANCE = FOOTPRINT + 0.38
+"""How far a polite one stays from the robot's middle, beside its own radius [m]; chosen."""
 
 
 def chosen(scene: Scene, wanted: tuple[Obstacle | str, ...] | str) -> tuple[Obstacle, ...]:

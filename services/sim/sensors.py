@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import IDENTITY_POSE, Array, Pose2, compose, inverse
-from common.robot.model import ARM, BASE
+from common.robot.joints import JOINTS
 from services.sim.body import Body
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
@@ -34,7 +34,6 @@ _TURN_RADIUS = 0.2
 """Distance of the wheels from the base's middle [m]: what turning on the spot rolls."""
 SLIP = 0.1
 """Share of the way that the wheels miss while they slide (chosen: what an anti-lock brake of a car aims at)."""
-_NAMES = [*BASE, *ARM, "gripper"]
 
 
 class Sensors:
@@ -72,7 +71,7 @@ class Sensors:
             topics.JOINT_STATES,
             m.JointStates(
                 t=t,
-                name=_NAMES,
+                name=list(JOINTS),
                 position=[x, y, yaw, *angles, width],
                 velocity=[*velocity, body.width_rate()],
                 effort=[*efforts, finger],

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from common.geometry import Array
 from services.sim.menagerie import RobotError
 from services.sim.robot import HULL_GROUP, MAST, ROBOT_GROUP
-from services.sim.things.thinning import corners
+from services.sim.things.thinning import CARE, corners
 
 THEIRS = {"base": "base_link", "arm_base": "gen3/base_link", "gripper": "base"}
 """Our bodies whose names are others there."""
@@ -20,8 +20,6 @@ MERGED = {"left_silicone_pad": "left_pad", "right_silicone_pad": "right_pad"}
 """Bodies without joint or mass, which only hold something to look at -> the body that they belong to."""
 FACES = 1500
 """Triangles wanted of a mesh to look at: twenty such meshes cost a picture about as much as the flat does."""
-CARE = 3
-"""How hard fast_simplification may collapse edges: with its usual 7, corners of the arm's shells flew off by 5 cm."""
 
 
 def dress(root: ET.Element, path: Path) -> None:

@@ -10,7 +10,8 @@ import msgspec
 from common import config
 from common.household import Household, load_household
 from common.language.pattern import PatternError
-from common.runtime import BAD_CONFIGURATION, StartError
+from common.process.host import BAD_CONFIGURATION
+from common.runtime import StartError
 from common.scene import SceneError
 from common.sound import AudioError, Samples, read_wav
 from common.speech_weights import WeightsError

@@ -13,7 +13,7 @@ from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from common.scene import load_scene
 from common.schemas import schema_of
 from common.topic import Topic

@@ -11,7 +11,7 @@ import zenoh
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from common.scene import load_scene
 from services.sim.physics import Physics
 from tests.robot_side import RobotSide

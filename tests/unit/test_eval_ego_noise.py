@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from common.sound import RATE
 from evaluation.person.ego_noise import DRIVE, FAN, FULL, LOOP, WHINE, EgoNoise
-from evaluation.person.voice import RATE, loudness
+from evaluation.person.voice import loudness
 
 SPEECH = 3000.0
 QUIET = np.zeros(RATE, np.int16)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cli.errors import CliError
+from common.sound import RATE
 from evaluation.case import Speaker
 from evaluation.person import voice
 from evaluation.suites.spoken import SENTENCES, read_corpus, spoken
@@ -55,11 +56,11 @@ def test_without_recordings_it_is_the_robots_own_voice() -> None:
 def test_recordings_are_heard_as_they_are_and_the_wake_word_is_put_before_them() -> None:
     mug, wake = np.full(1600, 50, "<i2"), np.full(800, 30, "<i2")
     speaker = Speaker("anna", {"bring me the red mug": mug.tobytes(), "hey jarvis": wake.tobytes()})
-    quiet = round((voice.LEAD + voice.TAIL) * voice.RATE)
+    quiet = round((voice.LEAD + voice.TAIL) * RATE)
     alone = voice.utter("Bring me the red mug!", speaker=speaker)
     assert len(alone) == quiet + 1600 and set(alone.tolist()) == {0, 50}
     both = voice.utter("hey jarvis, bring me the red mug", speaker=speaker)
-    assert len(both) == quiet + 800 + 1600 + round(voice.GAP * voice.RATE) and set(both.tolist()) == {0, 30, 50}
+    assert len(both) == quiet + 800 + 1600 + round(voice.GAP * RATE) and set(both.tolist()) == {0, 30, 50}
 
 
 def test_a_room_has_the_level_of_noise_that_was_asked_for() -> None:

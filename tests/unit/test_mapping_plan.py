@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 from common.floor_plan import Receptacle, Room, Wall
 from common.free_sides import free_sides
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
-from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
+from services.mapping.grid import Grid
 from services.mapping.plan import _delivery, _filled, _kind, _reached, _rim, _separate
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface

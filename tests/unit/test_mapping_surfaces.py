@@ -8,10 +8,11 @@ import pytest
 
 from common import messages as m
 from common.approach import FOOTPRINT
+from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 from common.geometry import matrix_quat
 from services.mapping.barriers import BEFORE, Met, glass, panes, shut
 from services.mapping.depth import CameraModel
-from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Grid
+from services.mapping.grid import RESOLUTION, Grid
 from services.mapping.mapper import Mapper
 from services.mapping.scan import Scan
 from services.mapping.surfaces import find_surfaces, fit_rectangle

@@ -8,7 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.household import load_household
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from services.perception.service import PerceptionService
 from services.perception.views.state_buffer import StateBuffer
 from services.sim.model import own

@@ -9,8 +9,9 @@ import pytest
 from common import messages as m
 from common.geometry import compose, quat_matrix
 from common.robot.frames import BASE_LINK, MAP, ODOM, BaseFrames, FramePose
+from common.robot.joints import ARM
 from common.robot.link_frames import LinkFrames
-from common.robot.model import ARM, RobotKinematics
+from common.robot.model import RobotKinematics
 from common.robot.urdf import pivots, urdf
 from common.scene import load_scene
 from services.sim.physics import Physics

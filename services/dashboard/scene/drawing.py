@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array, quat_matrix
+from common.rendering.looks import HIDDEN_GROUP, geom_colours
+from common.robot.joints import BASE_BODY
 
 if TYPE_CHECKING:
     from common.robot.model import Hand
 
-ROBOT_BODY = "base"
-HIDDEN_GROUP = 4
-"""First MuJoCo geom group that is not drawn: collision shapes are in it and above."""
 CUT = 1.0
 """Height [m] at which walls are cut off, so that one can look into the rooms."""
 SEE_THROUGH = "wall"
-_FREE, _HINGE = 0, 3  # mjtJoint
+_FREE, _HINGE = 0, 3
+"""Kinds of joints [mjtJoint]."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,6 @@ def draw(mjcf: str, files: dict[str, bytes] | None = None) -> Drawing:
     """
     import mujoco
 
-    from common.rendering.looks import geom_colours
     from common.robot.model import Hand
 
     model: Any = mujoco.MjModel.from_xml_string(mjcf, files or {})
@@ -101,7 +100,7 @@ def draw(mjcf: str, files: dict[str, bytes] | None = None) -> Drawing:
     for body in range(model.nbody):
         name = model.body(body).name
         geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == body and model.geom_group[g] < HIDDEN_GROUP]
-        if roots[body] == ROBOT_BODY:
+        if roots[body] == BASE_BODY:
             links.append(_link(model, body, joined([_geom(model, g, colours) for g in geoms])))
         elif _free(model, body):
             shape = joined([_geom(model, g, colours) for g in geoms])
@@ -133,7 +132,7 @@ def _link(model: Any, body: int, mesh: Mesh | None) -> Link:
         kind = "hinge" if int(model.jnt_type[j]) == _HINGE else "slide"
         axis, anchor = model.jnt_axis[j].copy(), model.jnt_pos[j].copy()
         joints.append(Joint(model.joint(j).name, kind, axis, anchor))
-    parent = "" if model.body(body).name == ROBOT_BODY else model.body(int(model.body_parentid[body])).name
+    parent = "" if model.body(body).name == BASE_BODY else model.body(int(model.body_parentid[body])).name
     rotation = quat_matrix(tuple(model.body_quat[body]))
     return Link(model.body(body).name, parent, model.body_pos[body].copy(), rotation, tuple(joints), mesh)
 
@@ -142,7 +141,7 @@ def _cameras(model: Any, roots: list[str]) -> list[Camera]:
     found = []
     for c in range(model.ncam):
         body = int(model.cam_bodyid[c])
-        if roots[body] != ROBOT_BODY:
+        if roots[body] != BASE_BODY:
             continue
         rotation = quat_matrix(tuple(model.cam_quat[c])) @ np.diag([1.0, -1.0, -1.0])
         fovy = float(np.radians(model.cam_fovy[c]))

@@ -16,7 +16,8 @@ GHOST = 0.3
 """Opacity of an object that was not seen for long; chosen: visible, yet not to be mistaken for a fresh sighting."""
 STILL = 1e-4
 """Change of a joint [m or rad] below which a link is not sent again: a tenth of a millimetre."""
-SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)  # sRGB
+SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
+"""Of the lidar's points and of the path (red, green, blue, 0 to 255); chosen: told apart on floor and walls."""
 LIDAR_HEIGHT = 0.2
 """Of the lidar's points in the view [m]: about the slot in the base that it looks out of."""
 PART = 1.0

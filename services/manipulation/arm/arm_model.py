@@ -9,7 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot.model import ARM, Hand, arm_forward, arm_limits, home_arm
+from common.robot.joints import ARM
+from common.robot.model import Hand, arm_forward, arm_limits, home_arm
 
 Array = NDArray[np.float64]
 BOXES = 24

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import mink
 import numpy as np
 
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from services.manipulation.arm.arm_model import ArmModel, Array, Pose
 
 ITERATIONS = 60

@@ -7,7 +7,7 @@ from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.robot.grip import Grip
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution.robot import Robot
 from services.manipulation.planning.motion_planner import Planner

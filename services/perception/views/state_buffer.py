@@ -10,7 +10,7 @@ from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Array, Pose2, pose_at, wrap
 from common.robot.grip import Grip
-from common.robot.model import ARM
+from common.robot.joints import ARM
 from services.perception.views.self_filter import RobotModel
 
 HISTORY = 100

@@ -12,6 +12,7 @@ from services.sim.things.primitives import geom
 
 STEEL: Rgba = (0.68, 0.70, 0.73, 1.0)
 DARK: Rgba = (0.10, 0.10, 0.11, 1.0)
+"""Colours (red, green, blue, opacity, 0 to 1) of metal, and of rubber and bristles."""
 
 
 def _at(*values: float) -> str:

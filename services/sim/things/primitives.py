@@ -11,8 +11,8 @@ CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .00
 _WALLS = 16
 """Flat pieces of a round wall: across their corners it is 2 % wider than its diameter; with 10 it was 5 %, which the
 gripper takes for a bad hold."""
-# Nothing that stands on a table reaches the lidar: its rays skip this group.
 GROUP = 1
+"""Geom group of what stands on tables [MuJoCo group]: it does not reach the lidar, whose rays skip the group."""
 
 
 def material(spec: ObjectSpec) -> str:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from common import speech_weights
 from common.inference import session
+from common.sound import RATE
 from services.speech.prepared import ENCODER, prepared
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
@@ -26,8 +27,6 @@ BEAM_THRESHOLD = 10.0
 """Natural logarithm of how much less likely than the best a hypothesis may be to stay in the beam."""
 FREE_BEAM = 8
 """Hypotheses of the search without a grammar (chosen: half of those under one, for the time they take)."""
-RATE = 16000
-"""Samples per second of the network's input."""
 REPLACED = 4
 """Most first words of a transcription that may be two misheard ones (chosen: `hey jarvis` as `he is a john is`)."""
 

@@ -11,6 +11,7 @@ _GROUPS = ("aeiouy", "bp", "ckq", "dt", "lr", "mn", "gj", "fpv", "sxz", "csz")
 _ALIKE = frozenset((a, b) for group in _GROUPS for a in group for b in group)
 _SILENT = frozenset("hw")
 SAME, ALIKE, OTHER = 0, 1, 2
+"""Distance of two letters, in halves of one letter that is wholly another."""
 NEAR = 0.25
 """Most distance per letter of the longer word, in letters wholly other, at which a word may be another one misheard
 (chosen)."""
