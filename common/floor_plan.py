@@ -11,7 +11,6 @@ from typing import Literal
 import msgspec
 
 from common.geometry import Rectangle
-from common.kinds import KINDS
 
 Vec2 = tuple[float, float]
 Vec3 = tuple[float, float, float]
@@ -155,17 +154,6 @@ class Place(Strict, frozen=True):
     aliases: tuple[str, ...] = ()
 
 
-class Thing(Strict, frozen=True, kw_only=True):
-    """An object by words and look: `kind` is one of `common.kinds`, `size` its full extent (x, y, z) upright."""
-
-    name: str
-    kind: str
-    colour: str
-    size: Vec3
-    rgba: Rgba
-    aliases: tuple[str, ...] = ()
-
-
 class FloorPlan(Strict, frozen=True, kw_only=True):
     """A building as a map has it: what stands firmly in it, and how people call its parts.
 
@@ -245,12 +233,3 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
 def doubled(names: Iterable[str]) -> str:
     """The first name that is there more than once, "" when none is."""
     return next((name for name, count in Counter(names).items() if count > 1), "")
-
-
-def kind_fault(thing: Thing) -> str:
-    """What is wrong with kind or size of an object, in words; "" when nothing is."""
-    if thing.kind not in KINDS:
-        return f"{thing.name!r} is a {thing.kind!r}; known kinds: {', '.join(KINDS)}"
-    if min(thing.size) <= 0 or not all(map(math.isfinite, thing.size)):
-        return f"{thing.name!r} needs a positive size"
-    return ""

@@ -9,11 +9,12 @@ from pathlib import Path
 import msgspec
 
 from common.config import config_dir
-from common.floor_plan import FloorPlan, Thing, doubled, kind_fault
+from common.floor_plan import FloorPlan, doubled
 from common.installation import shipped
 from common.naming.words import Words, words_path
 from common.plan_tables import SCENES, SceneError, checked, parse, read
 from common.scene import Scene
+from common.thing import Thing
 
 HOUSEHOLDS = shipped("config") / "households"
 WORLD_KEYS = frozenset({"objects", "obstacles"})
@@ -36,7 +37,7 @@ class Household(FloorPlan, frozen=True, kw_only=True):
             return found
         if twice := doubled(t.name for t in self.things):
             return f"thing {twice!r} is defined twice"
-        return next((f"thing {found}" for t in self.things if (found := kind_fault(t))), "")
+        return next((f"thing {found}" for t in self.things if (found := t.fault())), "")
 
 
 def mapped(plan: FloorPlan, words: Words | None = None) -> Household:

@@ -20,15 +20,14 @@ from common.floor_plan import (
     Rgba,
     Room,
     Strict,
-    Thing,
     Vec2,
     Vec3,
     Wall,
     doubled,
-    kind_fault,
 )
 from common.geometry import SIDES
 from common.plan_tables import SCENES, SceneError, checked, parse, read
+from common.thing import Thing
 
 __all__ = [
     "Box", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
@@ -157,7 +156,7 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
             if twice := doubled(names):
                 return f"{label} {twice!r} is defined twice"
         for spec in self.objects:
-            if found := kind_fault(spec):
+            if found := spec.fault():
                 return f"object {found}"
             if not (0 < spec.mass < math.inf) and not (spec.model and spec.mass == 0):
                 return f"object {spec.name!r} needs a positive size and mass"

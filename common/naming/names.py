@@ -4,10 +4,10 @@ import difflib
 import re
 from collections.abc import Iterable
 
-from common.floor_plan import Thing
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
+from common.thing import Thing
 
 _FILLER = {"the", "a", "an", "my", "that", "this", "some", "please", "to", "of"}
 

@@ -11,10 +11,11 @@ from typing import Protocol
 
 import numpy as np
 
-from common.floor_plan import Thing, Vec3
+from common.floor_plan import Vec3
 from common.geometry import Array
 from common.household import Household
 from common.kinds import kind_of
+from common.thing import Thing
 from services.perception import unlisted
 from services.perception.detection import Detection
 from services.perception.segments import segmentation, separate

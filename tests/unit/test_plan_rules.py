@@ -3,10 +3,11 @@
 import msgspec
 import pytest
 
-from common.floor_plan import Box, Place, Receptacle, Room, Thing
+from common.floor_plan import Box, Place, Receptacle, Room
 from common.household import Household
 from common.messages import AROUND, KnownWorld, PlanStep
 from common.plan_rules import MAX_STEPS, OPENING, is_destination, known_world, objection
+from common.thing import Thing
 
 COLOUR = (1.0, 0.0, 0.0, 1.0)
 

@@ -5,7 +5,6 @@ from typing import Literal
 
 import msgspec
 
-from common.floor_plan import Thing
 from common.household import Household
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
@@ -20,6 +19,7 @@ from common.language.normalise import (
 from common.language.noun_phrase import WHICH, related
 from common.language.politeness import without_politeness
 from common.language.wording import Action
+from common.thing import Thing
 
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]
 

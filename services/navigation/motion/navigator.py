@@ -14,16 +14,11 @@ from services.navigation.motion.path_follower import Lookahead
 from services.navigation.motion.progress import PASSING, PERSON, Progress
 from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
-from services.navigation.motion.route import DETOUR_PAUSE, Route
+from services.navigation.motion.route import DETOUR_PAUSE, STRAYED_PERIOD, Route
 from services.navigation.motion.targets import Targets
 from services.navigation.motion.waiting import Waiting
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
-
-REPLAN_PERIOD = 1.0
-"""Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
-STRAYED_PERIOD = 0.2
-"""The same while it stands off its path, with a wall between [s]: four steps."""
 
 
 class Navigator:
@@ -113,7 +108,7 @@ class Navigator:
             self._progress.allow(self._config.timeout_margin * 2, now)
         if now > self._progress.deadline:
             raise Ended("failed", "TIMEOUT", "no odometry, and the base never reported that it arrived")
-        if now - self._route.planned_at < REPLAN_PERIOD:
+        if not self._route.due(now):
             return None
         self._route.planned_at = now
         return self._targets.goal(min(self._route.choices)[1])
@@ -125,7 +120,7 @@ class Navigator:
 
     def ahead(self, pose: Pose2, now: float) -> list[Point]:
         """The way that is left [map], planned anew where it was left; empty: there is none now."""
-        if self._route.follower is None and self.begun and now - self._route.planned_at > REPLAN_PERIOD:
+        if self._route.follower is None and self.begun and self._route.due(now):
             self._plan(pose, now)
         return self._route.follower.left() if self._route.follower is not None else []
 
@@ -175,7 +170,7 @@ class Navigator:
         return bool(found)
 
     def _follow(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
-        if self._route.outdated and now - self._route.planned_at > REPLAN_PERIOD:
+        if self._route.outdated and self._route.due(now):
             self._replan(pose, obstacles, now)
         follower = self._route.follower
         if follower is None:
@@ -184,7 +179,7 @@ class Navigator:
         self.remaining = ahead.remaining
         if ahead.strayed:
             # There is another way from where it has been led to.
-            if now - self._route.planned_at > STRAYED_PERIOD:
+            if self._route.due(now, STRAYED_PERIOD):
                 self._route.follower = None
                 self._plan(pose, now)
             return self._targets.next(pose)
@@ -219,7 +214,7 @@ class Navigator:
 
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         """No path at this moment: stand, look for one every second, lose patience in time."""
-        if now - self._route.planned_at > REPLAN_PERIOD:
+        if self._route.due(now):
             if self._plan(pose, now, obstacles):
                 self.waiting.clear()
                 return self._targets.next(pose)

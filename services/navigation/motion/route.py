@@ -11,6 +11,10 @@ from services.navigation.motion.path_follower import PathFollower
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
+REPLAN_PERIOD = 1.0
+"""Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
+STRAYED_PERIOD = 0.2
+"""The same while it stands off its path, with a wall between [s]: four steps."""
 DETOUR_PAUSE = 4.0
 """Time after a detour before another path counts as one [s]; chosen: until then the same obstacle shows more sides."""
 SHORTER = 0.85
@@ -67,6 +71,10 @@ class Route:
     def waits(self) -> bool:
         """Another way has been found, but it is not worth going yet."""
         return self._shut is not None
+
+    def due(self, now: float, period: float = REPLAN_PERIOD) -> bool:
+        """The last plan was made more than `period` [s] ago."""
+        return now - self.planned_at > period
 
     def take_new_path(self) -> list[Point] | None:
         """The path, once after it has changed."""
