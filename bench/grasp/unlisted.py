@@ -112,7 +112,7 @@ class UnknownBench(Bench):
         mujoco.mj_forward(model, data)
         camera = data.cam("head")
         rays = raycast.directions(camera.xmat.reshape(3, 3), FOVY, WIDTH, HEIGHT)
-        distance, geom, _ = raycast._cast(model, data, camera.xpos, rays)
+        distance, geom, _ = raycast.cast(model, data, camera.xpos, rays)
         noisy = distance + self._rng.normal(0.0, 1.0, len(distance)) * NOISE_AT_1_M * distance**2
         points, body = camera.xpos + noisy[:, None] * rays, model.geom_bodyid[geom]
         objects = []

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from cli.cameras.shot import Mount, Shot, rays
 from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
+from common.rendering.raycast import cast
 from common.robot.joints import ARM
 from common.robot.model import RobotKinematics, arm_limits, home_arm, subtree
 
@@ -46,7 +47,6 @@ class Arm(RobotKinematics):
         self._base = int(self.model.body("base").id)
         first = self.model.body(int(self.model.jnt_bodyid[self.model.joint(ARM[0]).id])).name
         self._moving = np.isin(self.model.geom_bodyid, list(subtree(self.model, first)))
-        self._groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
         low, high = arm_limits(self.model)
         self.lowest, self.highest = low + FROM_LIMIT, high - FROM_LIMIT
         self.home = home_arm(self.model)
@@ -64,13 +64,7 @@ class Arm(RobotKinematics):
 
     def cast(self, origin: Array, directions: Array) -> tuple[Array, Array]:
         """Distances (n,) [m] (-1: nothing) and normals (n, 3) along unit `directions` (n, 3) in the base frame."""
-        count = len(directions)
-        distances, normals = np.empty(count), np.empty((count, 3))
-        geoms, flat = np.empty(count, np.int32), normals.reshape(-1)
-        rays = np.ascontiguousarray(directions).reshape(-1)
-        mujoco.mj_multiRay(
-            self.model, self.data, origin, rays, self._groups, 1, self._base, geoms, distances, flat, count, 10.0
-        )
+        distances, _, normals = cast(self.model, self.data, origin, directions, exclude=self._base)
         return distances, normals
 
     def take(self, shot: Shot) -> None:

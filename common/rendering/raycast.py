@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.rendering.looks import SKY, geom_colours
+from common.rendering.looks import HIDDEN_GROUP, SKY, geom_colours
 
 NEAR = 0.02
 """Distance [m] within which a hit is the camera's own housing."""
@@ -14,8 +14,7 @@ FAR = 30.0
 """Length of a ray [m]."""
 CHUNK = 16384
 """Rays of one call; chosen: 400 kB of directions fit the processor's cache."""
-TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
-"""This MuJoCo tells the normals of what rays hit, too."""
+_DRAWN = (np.arange(mujoco.mjNGROUP) < HIDDEN_GROUP).astype(np.uint8)
 _SKY = np.array(SKY, np.float64)
 _LIGHT = np.array([0.3, -0.4, 0.87])
 
@@ -30,19 +29,24 @@ def directions(rotation: NDArray[np.float64], fovy: float, width: int, height: i
     return turned
 
 
-def _cast(
-    model: Any, data: Any, origin: NDArray[np.float64], rays: NDArray[np.float64], exclude: int = -1
+def cast(
+    model: Any,
+    data: Any,
+    origin: NDArray[np.float64],
+    rays: NDArray[np.float64],
+    groups: NDArray[np.uint8] = _DRAWN,
+    exclude: int = -1,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
-    """Distance (n,), -1 for nothing, geom (n,) and normal (n, 3) along unit rays (n, 3); `exclude`: a body's number."""
+    """Distance (n,) [m], -1 for nothing, geom (n,) and normal (n, 3) along unit rays (n, 3) from `origin` (3,).
+
+    `groups` (6,): the geom groups that count; `exclude`: the number of a body that does not.
+    """
     count = len(rays)
     distance, geom, normal = np.empty(count), np.empty(count, np.int32), np.zeros((count, 3))
-    groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
     for a in range(0, count, CHUNK):
         b = min(count, a + CHUNK)
-        part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
-        middle = (ids, part, normals) if TAKES_NORMAL else (ids, part)
-        mujoco.mj_multiRay(model, data, origin, rays[a:b].reshape(-1), groups, 1, exclude, *middle, b - a, FAR)
-        distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
+        part, flat = np.ascontiguousarray(rays[a:b]).reshape(-1), normal[a:b].reshape(-1)
+        mujoco.mj_multiRay(model, data, origin, part, groups, 1, exclude, geom[a:b], distance[a:b], flat, b - a, FAR)
     return distance, geom, normal
 
 
@@ -62,14 +66,14 @@ def image(
     `body`: the one the camera is built into, whose case does not hide the view.
     """
     rays = directions(rotation, fovy, width, height)
-    distance, geom, normal = _cast(model, data, position, rays)
+    distance, geom, normal = cast(model, data, position, rays)
     case = (distance >= 0) & (distance < NEAR)
     if body >= 0 and case.any():
-        distance[case], geom[case], normal[case] = _cast(model, data, position, rays[case], body)
+        distance[case], geom[case], normal[case] = cast(model, data, position, rays[case], exclude=body)
     seen = (distance >= 0) & (distance < FAR)
     depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
     colours = geom_colours(model) * 255
-    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if TAKES_NORMAL else np.full(len(rays), 0.85)
+    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
     shown = np.where(seen, geom, -1).reshape(height, width)
     return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth, shown

@@ -3,12 +3,11 @@
 import math
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from common.rendering.raycast import TAKES_NORMAL
+from common.rendering.raycast import cast
 from common.robot.joints import BASE_BODY
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 from services.sim.things.primitives import GROUP
@@ -17,21 +16,6 @@ SEEN = 0
 """A group of geoms that lidars see."""
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 """Rays of a turn [count] and nearest and farthest range [m], as small lidars for indoors have them."""
-
-
-def cast(
-    model: Any, data: Any, origin: Array, directions: Array, groups: NDArray[np.uint8], without: int = -1
-) -> tuple[Array, NDArray[np.int32]]:
-    """Distances [m] (-1: nothing) and geom ids along unit `directions` (n, 3) from `origin` (3,).
-
-    `groups` (6,) are those of the geoms that count, `without` the number of a body that does not.
-    """
-    n = len(directions)
-    geom, distance = np.empty(n, np.int32), np.empty(n)
-    flat = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1)
-    middle = (geom, distance, None) if TAKES_NORMAL else (geom, distance)
-    mujoco.mj_multiRay(model, data, origin, flat, groups, 1, without, *middle, n, 100.0)
-    return distance, geom
 
 
 class Lidar:
@@ -60,12 +44,12 @@ class Lidar:
         directions = self._local @ rotation.T
         own = model.geom_group[self._others]
         model.geom_group[self._others] = SEEN  # what of this robot is not looked at, of another one is
-        distance, _ = cast(model, data, origin, directions, self._groups)
+        distance, *_ = cast(model, data, origin, directions, self._groups)
         model.geom_group[self._others] = own
         distance[distance < 0] = np.inf
         np.minimum(distance, self._posts, out=distance)
         if (data.geom_xpos[self._arm, 2] - model.geom_rbound[self._arm] < origin[2]).any():
-            arm, _ = cast(model, data, origin, directions, self._arm_groups, self._base)
+            arm, *_ = cast(model, data, origin, directions, self._arm_groups, self._base)
             np.minimum(distance, np.where(arm < 0, np.inf, arm), out=distance)
         hit = distance <= RANGE_MAX
         noisy = distance + self._rng.normal(0.0, self._noise, RAYS) if self._noise else distance
