@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from services.perception.segments.flat import patches
-from services.perception.segments.parts import joined, parts
+from services.perception.segments.parts import between_jumps, joined
 from services.perception.views.view import View
 
 HIGH, FOCAL = 1.0, 400.0
@@ -34,7 +34,7 @@ def test_parts_are_one_where_the_picture_shows_that_one_goes_on_in_the_other(
 ) -> None:
     view = two_bars(between)
     rows, columns = np.nonzero((view.depth > 0) & (view.depth < HIGH - 0.01))
-    cut = parts(view, rows, columns, 8)
+    cut = between_jumps(view, rows, columns, 8)
     assert len(cut) == 2
     assert len(joined(view, "table", np.zeros(3), cut, np.zeros(view.shape, bool), None)) == count
 

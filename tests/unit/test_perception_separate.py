@@ -89,6 +89,12 @@ def test_one_that_hides_a_part_of_another_is_told_apart() -> None:
     assert len(found) == 2
 
 
+def test_one_behind_another_of_its_colour_is_told_apart_and_known_to_be_hidden_in_part() -> None:
+    found = pieces(*picture([(0.95, 0.0, 0.03, 0.09, RED), (1.04, 0.05, 0.033, 0.065, RED)]))
+    near, far = sorted(found, key=lambda p: p.shape.x)
+    assert not near.segment.cut and far.segment.cut
+
+
 def test_what_is_printed_on_a_can_does_not_cut_it() -> None:
     assert middles([(1.0, 0.0, 0.04, 0.13, RED)], band=True) == [pytest.approx((1.0, 0.0), abs=0.006)]
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array
-from services.perception.segments.segment import Segment
+from services.perception.segments.segment import Segment, spread
 from services.perception.segments.segmentation import MIN_PIXELS
 from services.perception.views.view import View
 
@@ -43,12 +43,8 @@ def by_colour(view: View, segment: Segment, most: int = MOST_PIECES) -> NDArray[
     large = np.flatnonzero(counts >= max(MIN_PIXELS, LEAST_SHARE * len(segment.rows)))
     if not 2 <= len(large) <= most:
         return None
-    # What belongs to no large patch joins the nearest in the picture.
-    numbered = np.full(shape, -1)
-    for n, label in enumerate(large):
-        numbered[labels == label] = n
-    nearest = ndimage.distance_transform_edt(numbered < 0, return_distances=False, return_indices=True)
-    found: NDArray[np.intp] = numbered[tuple(nearest)][segment.rows - top, segment.columns - left].astype(np.intp)
+    patches = [np.nonzero(labels == label) for label in large]
+    found = spread(segment, [(rows + top, columns + left) for rows, columns in patches])
     return _alike_joined(found, smooth[segment.rows - top, segment.columns - left].astype(np.float64))
 
 

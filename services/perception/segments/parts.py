@@ -22,7 +22,7 @@ JOINED_EXTENT, LONGEST = 0.17, 0.30
 Chosen: a bowl and its noise; a watering can with its spout."""
 
 
-def parts(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], least: int) -> list[Pixels]:
+def between_jumps(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], least: int) -> list[Pixels]:
     """The pixels (n,) cut where the depth jumps; parts of fewer than `least` of them are left out."""
     top, left = int(rows.min()), int(columns.min())
     window = (slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1))

@@ -1,5 +1,6 @@
 """A segment of a view, and what the pixels around it say: something hides a part of it, or it goes on. Pure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -50,6 +51,17 @@ def renumbered(names: NDArray[np.intp]) -> NDArray[np.intp] | None:
     """Names of pieces (n,) as numbers from 0 on; None where there is but one piece."""
     kept, found = np.unique(names, return_inverse=True)
     return found.reshape(-1).astype(np.intp) if len(kept) > 1 else None
+
+
+def spread(segment: Segment, patches: Sequence[tuple[NDArray[np.intp], NDArray[np.intp]]]) -> NDArray[np.intp]:
+    """Number (n,) of the patch of each pixel of a segment; what belongs to none joins the nearest in the picture."""
+    top, left = int(segment.rows.min()), int(segment.columns.min())
+    numbered = np.full((int(np.ptp(segment.rows)) + 1, int(np.ptp(segment.columns)) + 1), -1)
+    for n, (rows, columns) in enumerate(patches):
+        numbered[rows - top, columns - left] = n
+    nearest = ndimage.distance_transform_edt(numbered < 0, return_distances=False, return_indices=True)
+    found = numbered[tuple(nearest)][segment.rows - top, segment.columns - left]
+    return np.asarray(found, np.intp)
 
 
 def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:

@@ -14,7 +14,7 @@ from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.flat import patches
 from services.perception.segments.floor import SEARCH, layers
 from services.perception.segments.outlined import is_part, on_surface, with_parts
-from services.perception.segments.parts import JUMP, joined, parts
+from services.perception.segments.parts import JUMP, between_jumps, joined
 from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
 from services.perception.views.view import Mask, View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
@@ -152,7 +152,7 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     if len(above) < MIN_PIXELS:
         return outlined
     rows, columns = np.unravel_index(above, view.shape)
-    cut = parts(view, rows, columns, MIN_PIXELS // 3)
+    cut = between_jumps(view, rows, columns, MIN_PIXELS // 3)
     over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
     left = [p for p in joined(view, expected.name, plane, cut, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]

@@ -1,8 +1,8 @@
 """Objects that touch: one segment into the pieces that are objects of their own. Pure.
 
-A segment stays whole when one shape explains it, whatever is printed on it. Otherwise pieces of one colour each, and
-pieces on both sides of a valley, are tried: what they are must be explained much better one by one, and none of them
-may hang in the air.
+A segment stays whole when one shape explains it, whatever is printed on it. Otherwise pieces of one colour each,
+pieces on both sides of a valley, and pieces on both sides of a jump of depth are tried: what they are must be explained
+much better one by one, and none of them may hang in the air.
 """
 
 import itertools
@@ -16,8 +16,9 @@ from common.geometry import Rectangle
 from services.perception.segments.air import hangs
 from services.perception.segments.colours import IN_A_CROWD, LEAST_SHARE, by_colour
 from services.perception.segments.joints import jointed
+from services.perception.segments.parts import between_jumps
 from services.perception.segments.seams import unseamed
-from services.perception.segments.segment import Segment
+from services.perception.segments.segment import Segment, covered, spread
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
 from services.perception.shapes.measurement import Measurement
 from services.perception.shapes.primitives import quantile
@@ -74,7 +75,7 @@ def _crowd(view: View, segment: Segment) -> list[Segment]:
     cut = by_colour(view, segment, IN_A_CROWD)
     if cut is None:
         cut = by_valley(view, segment)
-    return _cut(segment, cut) if cut is not None else []
+    return _cut(view, segment, cut) if cut is not None else []
 
 
 def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
@@ -86,10 +87,11 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     for cut in (
         unseamed(view, segment, coloured, noise) if coloured is not None else None,
         by_valley(view, segment),
+        by_jump(view, segment),
     ):
         if cut is None or (cut := jointed(view, segment, cut, noise)) is None:
             continue
-        cuts = _cut(segment, cut)
+        cuts = _cut(view, segment, cut)
         hanging = np.isin(cut, [n for n, s in enumerate(cuts) if hangs(view, s.points, s.surface.height)])
         if hanging.any():
             # It is no object by itself, and no part of the body: a handle, a spout.
@@ -116,7 +118,7 @@ def _level_joined(view: View, segment: Segment, cut: NDArray[np.intp], parts: li
     joint = jointed(view, segment, cut, noise, shapeless) if shapeless else cut
     if joint is None or int(joint.max()) + 1 == len(parts):
         return [] if joint is None else parts
-    return [Piece(s, measured(view, s)) for s in _cut(segment, joint)]
+    return [Piece(s, measured(view, s)) for s in _cut(view, segment, joint)]
 
 
 def _explained(piece: Piece, noise: float) -> bool:
@@ -154,22 +156,34 @@ def _beside(parts: list[Piece]) -> bool:
     )
 
 
-def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
-    """The parts of a segment by the number (n,) of each pixel's; a side on which another part lies is hidden or not,
-    which is not known: the segment's own word is kept."""
+def _cut(view: View, segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
+    """The parts of a segment by the number (n,) of each pixel's; whether what is nearer hides a side of one is seen."""
     found = []
+    nobody = np.zeros(view.shape, bool)
     for n in range(int(cut.max()) + 1):
         own = cut == n
+        rows, columns = segment.rows[own], segment.columns[own]
+        some, left, right = covered(view, rows, columns, nobody)
         found.append(
             replace(
                 segment,
-                rows=segment.rows[own],
-                columns=segment.columns[own],
+                rows=rows,
+                columns=columns,
                 points=segment.points[own],
+                cut=segment.cut or some or left or right,
+                ends=(segment.ends[0] and not right, segment.ends[1] and not left),
                 dark=segment.dark[:0],
             )
         )
     return found
+
+
+def by_jump(view: View, segment: Segment) -> NDArray[np.intp] | None:
+    """Number (n,) of the part of each pixel where the depth jumps within a segment: one thing of its colour behind
+    another, of which the picture shows one; None if it does not jump.
+    """
+    found = between_jumps(view, segment.rows, segment.columns, max(MIN_PIXELS, int(LEAST_SHARE * len(segment.rows))))
+    return spread(segment, found) if len(found) > 1 else None
 
 
 def by_valley(view: View, segment: Segment) -> NDArray[np.intp] | None:
