@@ -9,9 +9,10 @@ from typing import Literal
 
 import msgspec
 
+from common.kinds import kind_of
 from common.scene import Scene
 from judge.evidence import Sample
-from judge.track import TOPPLED, distance
+from judge.track import TOPPLED, Thing, distance
 from judge.words import plain
 
 Kind = Literal[
@@ -109,7 +110,8 @@ class Watcher:
                 now = last.things[effect.what]
                 return "" if now.on not in ("", "floor") and not now.touched else f"the {effect.what} is not put down"
             case "remains":
-                return _away(last, effect.what, effect.other)
+                spec = self._scene.object(effect.what)
+                return _away(last.things[effect.what], spec.kind if spec else "", effect.what, effect.other)
             case "beside":
                 return self._apart(last, effect.what, effect.other)
             case "hand":
@@ -188,14 +190,13 @@ class Watcher:
                 return ""
 
 
-def _away(last: Sample, name: str, surface: str) -> str:
-    """Why an object is not where it was, put back perhaps: on its surface, let go and, if it did, standing."""
-    now = last.things[name]
+def _away(now: Thing, kind: str, name: str, surface: str) -> str:
+    """Why an object is not where it was, put back perhaps: on its surface, let go and, if its kind does, standing."""
     if now.held:
         return f"the {name} is in the hand"
     if now.on != surface:
         return f"the {name} is on {now.on or 'nothing'}, not on the {surface}"
-    return f"the {name} went over" if now.tilt > TOPPLED else ""
+    return f"the {name} went over" if kind_of(kind).upright and now.tilt > TOPPLED else ""
 
 
 def at(scene: Scene, name: str, x: float, y: float) -> bool:

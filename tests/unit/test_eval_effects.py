@@ -176,3 +176,10 @@ def test_effects_name_what_is_in_their_scene() -> None:
             if effect.kind in ("visits", "ends"):
                 assert at(case.scene, effect.what, *HOME) or at(case.scene, effect.what, *KITCHEN)
     assert {line.text for task in TALKS for line in task.then} >= {"stop", "cancel", "come here"}
+
+
+def test_what_has_an_upright_goes_over_and_an_apple_only_turns() -> None:
+    turned = {"tilt": 0.6}
+    apple, mug = (msgspec.structs.replace(thing, **turned) for thing in (APPLE, MUG))
+    assert why(Effect("remains", "apple", "kitchen table"), sample(0.0), sample(1.0, apple=apple)) == ""
+    assert "went over" in why(Effect("remains", "red mug", "counter"), sample(0.0), sample(1.0, mug=mug))
