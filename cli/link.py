@@ -129,6 +129,11 @@ class Watch(Generic[M]):
                 if monotonic() >= end:
                     return None
 
+    def drain(self) -> Iterator[M]:
+        """The messages that are there already."""
+        while (message := self.next(0.0)) is not None:
+            yield message
+
     def until(self, wanted: Callable[[M], bool], seconds: float) -> M | None:
         """The first message that is `wanted`; None when none comes within so many seconds."""
         end = monotonic() + seconds

@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import msgspec
+import zenoh
 
 from cli.errors import CliError, near
 from cli.link import Link, known_keys, linked, robot_command
@@ -22,9 +23,10 @@ from common.topic import Topic
 
 def matches(expression: str, key: str) -> bool:
     """Does a key expression with `*` and `**` match a key?"""
-    pattern = re.escape(expression).replace(r"/\*\*", r"(/.*)?").replace(r"\*\*/", "(.*/)?")
-    pattern = pattern.replace(r"\*\*", ".*").replace(r"\*", "[^/]+")
-    return re.fullmatch(pattern, key) is not None
+    try:
+        return bool(zenoh.KeyExpr(expression).includes(zenoh.KeyExpr(key)))
+    except zenoh.ZError:
+        return False
 
 
 def check_key(expression: str) -> str:
@@ -34,11 +36,7 @@ def check_key(expression: str) -> str:
         CliError: none does; names the nearest keys.
     """
     keys = known_keys()
-    dynamic = [
-        topics.HEALTH.of("sim"),
-        topics.ALIVE_KEY.format(name="sim"),
-        topics.LOG.of("sim"),
-    ]
+    dynamic = topics.HEALTH.of("sim"), topics.ALIVE_KEY.format(name="sim"), topics.LOG.of("sim")
     if topics.type_of(expression) is not None or any(matches(expression, k) for k in (*keys, *dynamic)):
         return expression
     raise CliError(f"no topic {expression!r}{near(expression, keys)}")

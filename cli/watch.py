@@ -55,7 +55,7 @@ class Picture:
 
     def update(self) -> None:
         for key, watch in self._watches.items():
-            while (message := watch.next(0.0)) is not None:
+            for message in watch.drain():
                 self.now[key] = message
                 self.hear(message)
         if monotonic() - self._asked >= SERVICES_EVERY:

@@ -1,7 +1,5 @@
 """Was it really delivered? The judge of the evaluation, over a link to a robot that runs."""
 
-from typing import Any
-
 import msgspec
 
 from cli.link import Link, Watch
@@ -61,13 +59,13 @@ class Witness:
             observer.world(world)
             self.now = max(self.now, world.t)
             world = self._state.next(0.0)
-        for contacts in _drain(self._contacts):
+        for contacts in self._contacts.drain():
             observer.contacts(contacts)
-        for status in _drain(self._speech):
+        for status in self._speech.drain():
             observer.speech(self.now, status)
-        for system in _drain(self._status):
+        for system in self._status.drain():
             observer.status(self.now, system)
-        for state in _drain(self._brain):
+        for state in self._brain.drain():
             observer.brain(self.now, state)
 
     def judge(self) -> Verdict:
@@ -84,10 +82,3 @@ class Witness:
             return Verdict(False, "; ".join(against))
         thing = evidence.things[0]
         return Verdict(True, f"the {self._thing} stands on {thing.on}, {thing.tilt:.0f} degrees from upright")
-
-
-def _drain(watch: "Watch[Any]") -> list[Any]:
-    found = []
-    while (message := watch.next(0.0)) is not None:
-        found.append(message)
-    return found
