@@ -8,11 +8,14 @@ from common import messages as m
 from common import topics
 from evaluation.stack import Stack
 from evaluation.watch import Watch
-from judge.claims import Claim, false_claims
+from judge.claims import Claim
 from judge.evidence import Evidence, Want
 from judge.goal import Goal
 from judge.observer import WATCH
 from judge.verdict import objections
+
+PATIENCE = 400.0
+"""Robot time [s] for a mission; chosen."""
 
 
 @dataclass
@@ -34,10 +37,6 @@ class Outcome:
         """What speaks against a flawless delivery."""
         return objections(self.evidence, self.claims)
 
-    @property
-    def false_claims(self) -> int:
-        return false_claims(self.claims)
-
 
 class Robot(Stack):
     """Every service of the fetch pipeline in one process, and the judge's watch."""
@@ -50,7 +49,7 @@ class Robot(Stack):
         self.watch: Watch = self.join(Watch)
 
 
-def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: Any = None) -> Outcome:
+def fetch(robot: Robot, item: str, seed: int, speech: Any = None) -> Outcome:
     """Ask for an item and step until the brain has reported; `speech` is 16 kHz audio, else the words are typed."""
     outcome = Outcome(seed, item)
     while robot.state().state != "LISTENING":
@@ -64,7 +63,7 @@ def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: A
         robot.bus.send(topics.SPEECH_TEXT, m.TypedText(text=f"bring me the {item}"))
     else:
         robot.play(speech)
-    while robot.now - begin < patience:
+    while robot.now - begin < PATIENCE:
         robot.advance(0.1)
         state = robot.state()
         if not outcome.states or outcome.states[-1] != state.state:

@@ -47,7 +47,6 @@ class Labelled(NamedTuple):
     """
 
     list: str
-    sentence: Sentence
     words: tuple[str, ...]
     found: list[Chunk]
     meant: list[Candidate]
@@ -97,7 +96,7 @@ class _Planner:
         right = [(idle and c.form == NONE) or self._is_right(row, c, idle) for c in meant]
         right[1] = not any(right)
         assert meant[1].form == OTHER
-        return Labelled(number, row, words, found, meant, right, vocabulary.situation)
+        return Labelled(number, words, found, meant, right, vocabulary.situation)
 
     def _is_right(self, row: Sentence, candidate: Candidate, idle: bool) -> bool:
         if not candidate.text or not _may_be(row, candidate, idle):

@@ -206,14 +206,14 @@ def use_keys(directory: str) -> None:
 
 
 @contextmanager
-def linked(args: argparse.Namespace, patience: float = 3.0, name: str = OPERATOR) -> Iterator[Link]:
+def linked(args: argparse.Namespace, name: str = OPERATOR) -> Iterator[Link]:
     """A link to the robot, under the certificate of `name` where there are keys.
 
     Raises:
         BusError: no router, or a bad endpoint.
     """
     connect, namespace = address(args)
-    with open_session(connect, namespace, patience=patience, name=name) as session:
+    with open_session(connect, namespace, name=name) as session:
         yield Link(session, connect)
 
 

@@ -136,14 +136,14 @@ def load(section: str, kind: type[S], directory: Path, changes: Mapping[str, Map
     return _convert(values, kind, section)
 
 
-def settings(environ: Mapping[str, str] = os.environ) -> dict[str, Any]:
+def settings() -> dict[str, Any]:
     """What files and environment set, as `section.key`, but for tables and secrets; a default stands in no file."""
     found: dict[str, Any] = {}
-    for path in sorted(config_dir(environ).glob("*.toml")):
+    for path in sorted(config_dir().glob("*.toml")):
         with contextlib.suppress(tomllib.TOMLDecodeError, UnicodeDecodeError, OSError):
             values = tomllib.loads(path.read_text(encoding="utf-8"))
             found |= {f"{path.stem}.{key}": value for key, value in values.items()}
-    for section, changes in overrides(environ, ()).items():
+    for section, changes in overrides(os.environ, ()).items():
         found |= {f"{section}.{key}": value for key, (value, _) in changes.items()}
     plain = {name: value for name, value in found.items() if isinstance(value, (bool, int, float, str))}
     return {name: value for name, value in plain.items() if not _SECRET.search(name)}

@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 
 PACKAGE, VERSION, PLATFORM = "moonshine-cpp", "0.1.4", "manylinux2014_x86_64"
@@ -27,9 +26,9 @@ class WeightsError(RuntimeError):
     """The weights are not there, or could not be fetched; the message says what to do."""
 
 
-def places(environ: Mapping[str, str] = os.environ) -> tuple[Path, Path]:
+def places() -> tuple[Path, Path]:
     """Where `fetch` puts them: with the Python environment, or else, when that is read-only, in the user's cache."""
-    cache = Path(environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return Path(sys.prefix) / "share" / "tidybot" / NAME, cache / "tidybot" / NAME
 
 

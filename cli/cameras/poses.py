@@ -50,7 +50,7 @@ class FreeSpace:
         return bool((distances < self._limit).all()) and int((distances > 0.0).sum()) >= least
 
 
-def poses(arm: Arm, image: Rgbd, count: int, seed: int = 0) -> list[Array]:
+def poses(arm: Arm, image: Rgbd, count: int) -> list[Array]:
     """Joint angles (7,) [rad] in which a camera sees the arm in different ways, in straight reach of the carry pose.
 
     `image`: that camera's picture of the carry pose. The arm stays above `LOWEST`, within `WITHIN` of the base's middle
@@ -60,12 +60,12 @@ def poses(arm: Arm, image: Rgbd, count: int, seed: int = 0) -> list[Array]:
         Unseen: hardly any pose is in view.
     """
     space = FreeSpace(arm, image)
-    return _choose(arm, space, lambda: space.holds(3 * LEAST), count, seed)
+    return _choose(arm, space, lambda: space.holds(3 * LEAST), count)
 
 
-def _choose(arm: Arm, space: FreeSpace, useful: Callable[[], bool], count: int, seed: int) -> list[Array]:
+def _choose(arm: Arm, space: FreeSpace, useful: Callable[[], bool], count: int) -> list[Array]:
     """Choose, of random poses near the carry pose that are `useful` and safe, those that differ most."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     found: list[Array] = []
     features: list[Array] = []
     for _ in range(TRIES):
@@ -96,7 +96,7 @@ def _free(arm: Arm, space: FreeSpace, joints: Array) -> bool:
     return arm.reach()[0] >= LOWEST and not arm.collides() and space.holds()
 
 
-def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: Room, count: int, seed: int = 0) -> list[Array]:
+def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: Room, count: int) -> list[Array]:
     """Joint angles (7,) [rad] in which the camera on the hand looks from different sides at what `room` shows.
 
     `image`: its picture from the carry pose, `before`: the other camera's. The arm keeps the limits of `poses`.
@@ -116,4 +116,4 @@ def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: Room, count: int, seed:
         frame = site.xmat.reshape(3, 3)
         return room.share(site.xpos + frame @ position, ahead @ (frame @ rotation).T) > OVERLAP
 
-    return _choose(arm, space, looks, count, seed)
+    return _choose(arm, space, looks, count)

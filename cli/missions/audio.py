@@ -1,6 +1,5 @@
 """A recording for speech recognition: read and checked, then sent at the pace of robot time."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +47,7 @@ class Player:
     def __init__(self, link: Link, chunks: list[bytes]) -> None:
         self._link, self._chunks = link, chunks
 
-    def play(self, progress: Callable[[float], None] = lambda t: None) -> None:
+    def play(self) -> None:
         """Returns when all is said.
 
         Raises:
@@ -78,7 +77,6 @@ class Player:
                     stamp = delivery.stamp(tick.tick if tick.lockstep else None)
                     out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
                     sent += 1
-                    progress(at)
                 if tick.lockstep and tick.tick % _PERIOD == 0:
                     self._acknowledge(tick.tick)
         finally:

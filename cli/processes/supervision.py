@@ -31,6 +31,8 @@ STATES = {
     "UNKNOWN": "failed",
 }
 WORLD = "sim.checkpoint"
+ENDING = 15.0
+"""Time [s] that a run has to end before it is killed; chosen: each of its processes has six."""
 
 
 class RunInfo(msgspec.Struct):
@@ -107,7 +109,7 @@ class Supervision:
             return text.splitlines()[-1] if text else f"supervisord ended with {self.process.returncode}"
         return "supervisord ended"
 
-    def stop(self, patience: float = 15.0) -> bool:
+    def stop(self) -> bool:
         """End every process of the run; False when there was none."""
         pid = self.pid()
         with contextlib.suppress(CliError):
@@ -117,13 +119,13 @@ class Supervision:
         if pid is None:
             self._forget()
             return False
-        end = clock.monotonic() + patience
+        end = clock.monotonic() + ENDING
         while self._runs(pid):
             if clock.monotonic() > end:
                 # Its children follow it: they asked the kernel to.
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
-                end = clock.monotonic() + patience
+                end = clock.monotonic() + ENDING
             clock.sleep(0.02)
         self._forget()
         return True

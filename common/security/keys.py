@@ -18,8 +18,8 @@ class KeysError(ValueError):
     """A certificate that cannot be used; the message says which and what to do."""
 
 
-def directory(environ: Mapping[str, str] = os.environ, default: Path | None = None) -> Path | None:
-    """Where the keys are: TIDYBOT_KEYS ("off": none), or `default` when that is there.
+def directory(environ: Mapping[str, str] = os.environ) -> Path | None:
+    """Where the keys are: TIDYBOT_KEYS ("off": none), or `default_directory` when that is there.
 
     Raises:
         KeysError: TIDYBOT_KEYS names nothing.
@@ -32,7 +32,7 @@ def directory(environ: Mapping[str, str] = os.environ, default: Path | None = No
         if not found.is_dir():
             raise KeysError(f"TIDYBOT_KEYS={given}: no such directory; `tidybot keys --dir {given}` makes it")
         return found
-    default = default or default_directory(environ)
+    default = default_directory(environ)
     return default if default.is_dir() and any(default.iterdir()) else None
 
 

@@ -1,7 +1,7 @@
 """The floor of a home that is being furnished: what is taken, and where the robot still gets. Pure."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,9 +41,9 @@ class Floor:
             floor.take(outline)
         return floor
 
-    def _inside(self, area: Rectangle, margin: float = 0.0) -> Mask:
+    def _inside(self, area: Rectangle) -> Mask:
         u, v = area.to_local(self._x, self._y)
-        found: Mask = (np.abs(u) <= area.length / 2 + margin) & (np.abs(v) <= area.width / 2 + margin)
+        found: Mask = (np.abs(u) <= area.length / 2) & (np.abs(v) <= area.width / 2)
         return found
 
     def keep(self, area: Rectangle) -> None:
@@ -105,10 +105,10 @@ class Floor:
         n = int(rng.integers(len(rows)))
         return float(self._x[rows[n], columns[n]]), float(self._y[rows[n], columns[n]])
 
-    def approaches(self, area: Rectangle, within: Mask, sides: Sequence[tuple[int, int]] = SIDES) -> list[Vec2]:
+    def approaches(self, area: Rectangle, within: Mask) -> list[Vec2]:
         """Directions in the area's own frame from whose edge the base reaches it from cells `within`."""
         found = []
-        for i, j in sides:
+        for i, j in SIDES:
             off = (area.length if i else area.width) / 2 + EDGE_DISTANCE + CELL
             along = (area.width if i else area.length) / 2
             # At the middle of the edge and half-way to its ends.

@@ -22,7 +22,7 @@ from cli.errors import CliError
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
 from evaluation.workers.fingerprint import difference, fingerprint
-from evaluation.workers.lane import SILENCE, WALL_LIMIT, Lane, LaneClosed, Run, name_of
+from evaluation.workers.lane import Lane, LaneClosed, Run, name_of
 from evaluation.workers.pool import Progressed, Repeated, Said
 
 INSTALL = "pip install 'tidybot-zenoh[cluster]'"
@@ -41,9 +41,7 @@ class Mismatch(RuntimeError):
     """A worker runs other code than the client."""
 
 
-def evaluate(
-    cases: list[Case], address: str, jobs: int, run: Run, limit: float = WALL_LIMIT, silence: float = SILENCE
-) -> Generator[Said, None, None]:
+def evaluate(cases: list[Case], address: str, jobs: int, run: Run) -> Generator[Said, None, None]:
     """Run cases on the workers of the scheduler at `address`, as `pool.evaluate`; `local` starts `jobs` of them here.
 
     Raises:
@@ -51,7 +49,7 @@ def evaluate(
     """
     with _client(address, jobs) as client:
         _check(client)
-        yield from _evaluate(client, cases, run, limit, silence)
+        yield from _evaluate(client, cases, run)
 
 
 @contextmanager
@@ -107,7 +105,7 @@ def _check(client: Any) -> None:
             raise CliError(f"the worker at {address} {difference(ours, theirs)}; install the same version there")
 
 
-def _evaluate(client: Any, cases: list[Case], run: Run, limit: float, silence: float) -> Generator[Said, None, None]:
+def _evaluate(client: Any, cases: list[Case], run: Run) -> Generator[Said, None, None]:
     import distributed
 
     name = f"tidybot-eval-{uuid.uuid4().hex[:12]}"
@@ -116,7 +114,7 @@ def _evaluate(client: Any, cases: list[Case], run: Run, limit: float, silence: f
     where, ours, encode = name_of(run), fingerprint(), msgspec.msgpack.encode
     futures = {}
     for number, case in enumerate(cases):
-        words = (name, number, encode(case), where, limit, silence, ours)
+        words = (name, number, encode(case), where, ours)
         future = client.submit(work, *words, key=f"{name}-{number}", pure=False)
         future.add_done_callback(lambda done, number=number: arrived.put((number, done)))
         futures[number] = future
@@ -171,7 +169,7 @@ _running: dict[str, list[Lane]] = {}
 _lock = Lock()
 
 
-def work(name: str, number: int, case: bytes, run: str, limit: float, silence: float, ours: dict[str, str]) -> bytes:
+def work(name: str, number: int, case: bytes, run: str, ours: dict[str, str]) -> bytes:
     """Run one case in a lane of this worker: encoded case in, encoded result out.
 
     Raises:
@@ -186,7 +184,7 @@ def work(name: str, number: int, case: bytes, run: str, limit: float, silence: f
     def tell(**words: Any) -> None:
         here.log_event(name, {"number": number, "worker": here.address, **words})
 
-    lane = _take(name, run, limit, silence)
+    lane = _take(name, run)
     try:
         found = lane.run(
             msgspec.msgpack.decode(case, type=Case),
@@ -200,12 +198,12 @@ def work(name: str, number: int, case: bytes, run: str, limit: float, silence: f
     return msgspec.msgpack.encode(found)
 
 
-def _take(name: str, run: str, limit: float, silence: float) -> Lane:
+def _take(name: str, run: str) -> Lane:
     """A lane for one thread of this worker; idle ones of earlier runs are ended."""
     with _lock:
         old = [lane for other in list(_lanes) if other != name for lane in _lanes.pop(other)]
         idle = _lanes.setdefault(name, [])
-        lane = idle.pop() if idle else Lane(run, limit, silence)
+        lane = idle.pop() if idle else Lane(run)
         _running.setdefault(name, []).append(lane)
     for each in old:
         each.close()

@@ -103,7 +103,7 @@ class Walker:
 
 
 class Obstacles:
-    """All obstacles; `moving` tells whether any moved in the last step. `solids` is what people walk round."""
+    """All obstacles. `solids` is what people walk round."""
 
     def __init__(self, obstacles: tuple[Obstacle, ...], model: Any, solids: Sequence[Rectangle] = ()) -> None:
         self._all: list[Walker | Pedestrian] = []
@@ -115,20 +115,16 @@ class Obstacles:
         people = [w for w in self._all if isinstance(w, Pedestrian)]
         for person in people:
             person.others = people
-        self.moving = False
 
     def reset(self) -> None:
-        self.moving = False
         for walker in self._walkers:
             walker.reset()
 
     def advance(self, data: Any, robot: tuple[float, float], dt: float) -> None:
         """Walk everybody on by `dt` with the robot at `robot`."""
-        self.moving = False
         for walker in self._walkers:
             if walker.advance(robot, dt):
                 data.mocap_pos[walker.mocap, :2] = walker.place
-                self.moving = True
 
     def report(self, data: Any) -> dict[str, dict[str, Any]]:
         """Name -> kind, position (3,), size."""

@@ -22,7 +22,7 @@ MIN_NOISE = 2048
 _HANN = np.sqrt(np.hanning(WINDOW + 1)[:-1])
 
 
-def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR) -> Array:
+def reduce_noise(audio: Array, speech: tuple[int, int]) -> Array:
     """`audio` (n,) with the noise that is heard outside of `speech` (first and last sample) taken out of all of it."""
     if len(audio) < 2 * WINDOW:
         return audio
@@ -40,7 +40,7 @@ def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR) ->
     for k in range(count):
         posterior = power[k] / noise
         prior = SMOOTHING * before / noise + (1 - SMOOTHING) * np.maximum(posterior - 1, 0)
-        gain = np.maximum(prior / (1 + prior), floor)
+        gain = np.maximum(prior / (1 + prior), FLOOR)
         clean[k] = gain * spectrum[k]
         before = np.abs(clean[k]) ** 2
     frames = np.fft.irfft(clean, WINDOW, axis=1) * _HANN

@@ -56,9 +56,9 @@ class Grammar:
         """Let go of the states that were found so far; they are found anew."""
         self._steps.clear()
 
-    def walk(self, text: str, state: State | None = None) -> State:
+    def walk(self, text: str) -> State:
         """The state after `text`."""
-        state = self.start if state is None else state
+        state = self.start
         for character in text:
             state = self.step(state, character)
             if not state:
