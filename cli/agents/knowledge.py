@@ -1,12 +1,10 @@
 """What an agent may know of the robot: pictures, objects, the map, its state. Each function asks the bus once."""
 
-import io
 import os
 import uuid
 from typing import Any, Literal
 
 import numpy as np
-from PIL import Image
 
 from cli.errors import CliError
 from cli.link import Link, Watch
@@ -18,6 +16,8 @@ from common import config, topics
 from common import messages as m
 from common.cells import unpacked
 from common.household import Household, load_household
+from common.rendering.encode import jpeg, png
+from common.robot.pictures import colours
 from common.scene import SceneError
 
 Camera = Literal["head", "wrist"]
@@ -46,9 +46,7 @@ def picture(link: Link, camera: Camera) -> bytes:
     seen = watch.until(lambda picture: picture.id == request.id, PICTURE_LIMIT)
     if seen is None:
         raise CliError(f"the {camera} camera does not answer; see `tidybot ps`")
-    out = io.BytesIO()
-    Image.frombytes("RGB", (seen.width, seen.height), seen.rgb).save(out, "JPEG", quality=JPEG_QUALITY)
-    return out.getvalue()
+    return jpeg(colours(seen), JPEG_QUALITY)
 
 
 def objects(link: Link) -> list[dict[str, Any]]:
@@ -114,9 +112,7 @@ def map_picture(link: Link) -> bytes:
     if pose is not None:
         row, column = (int((v - o) / seen.resolution) for v, o in ((pose.y, seen.y), (pose.x, seen.x)))
         shown[max(0, row - 2) : row + 3, max(0, column - 2) : column + 3] = (255, 0, 0)
-    out = io.BytesIO()
-    Image.fromarray(shown[::-1]).save(out, "PNG")
-    return out.getvalue()
+    return png(shown[::-1])
 
 
 def status(link: Link) -> dict[str, Any]:

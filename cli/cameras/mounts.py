@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cli.cameras.shot import Mount, Shot, rays
+from cli.cameras.shot import STEP, Mount, Shot
 from cli.cameras.surfaces import Surface
 from common.geometry import Array, quat_matrix
+from common.robot.pictures import depths, rays
 
 ROUNDS = 12
 """Iterations; the error of a mount of 3 mm and .3 deg is below a hundredth of that after six."""
@@ -64,7 +65,7 @@ def _normal_equations(
 ) -> tuple[Array, Array, Array]:
     """A (6, 6) and b (6,) of the step [m, rad] in the drawing's optical frame, and the residuals (n,) [m]."""
     surface.take(shot)
-    ahead, depth = rays(shot.image)
+    ahead, depth = rays(shot.image, STEP), depths(shot.image)[::STEP, ::STEP]
     nominal, seen = quat_matrix(shot.image.orientation), depth.ravel() > 0.0
     # In the drawing's optical frame: where the camera is, and where its pixels look.
     looks = turn.apply(ahead.reshape(-1, 3))

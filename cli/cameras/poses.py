@@ -6,10 +6,11 @@ import numpy as np
 from scipy import ndimage
 
 from cli.cameras.mounts import LEAST, Unseen
-from cli.cameras.shot import rays
+from cli.cameras.shot import STEP
 from cli.cameras.surfaces import Arm, Room
 from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
+from common.robot.pictures import depths, rays
 
 LOWEST, WITHIN = 0.36, 0.85
 """Height [m] above which the arm stays while it is looked at, just above the deck, and how far [m] from the base's
@@ -31,7 +32,7 @@ class FreeSpace:
     """What a camera saw with the arm in its carry pose: the arm may move in front of it, and nowhere else."""
 
     def __init__(self, arm: Arm, image: Rgbd) -> None:
-        ahead, depth = rays(image)
+        ahead, depth = rays(image, STEP), depths(image)[::STEP, ::STEP]
         directions = ahead.reshape(-1, 3) @ quat_matrix(image.orientation).T
         lengths = np.linalg.norm(directions, axis=1)
         self._arm, self._origin, self._directions = arm, np.array(image.position), directions / lengths[:, None]
@@ -109,7 +110,7 @@ def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: Room, count: int) -> li
     hand = arm.data.site("pinch")
     turn = hand.xmat.reshape(3, 3).T
     position, rotation = turn @ (np.array(image.position) - hand.xpos), turn @ quat_matrix(image.orientation)
-    ahead = rays(image, COARSE)[0].reshape(-1, 3)
+    ahead = rays(image, COARSE).reshape(-1, 3)
 
     def looks() -> bool:
         site = arm.data.site("pinch")

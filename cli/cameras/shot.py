@@ -42,12 +42,3 @@ class Mount:
         off, by = float(np.linalg.norm(self.offset)), 2 * float(np.linalg.norm(self.offset_deviation))
         turned, about = float(np.linalg.norm(self.turn)), 2 * float(np.linalg.norm(self.turn_deviation))
         return off < TRUE_OFFSET + by and turned < TRUE_TURN + about
-
-
-def rays(image: Rgbd, step: int = STEP) -> tuple[Array, Array]:
-    """Points (h, w, 3) on the plane one metre ahead in the optical frame, and depth (h, w) [m], every `step` pixels."""
-    depth = np.frombuffer(image.depth, "<u2").reshape(image.height, image.width)[::step, ::step] / 1000.0
-    u = (np.arange(0, image.width, step) + 0.5 - image.cx) / image.fx
-    v = (np.arange(0, image.height, step) + 0.5 - image.cy) / image.fy
-    across, down = np.meshgrid(u, v)
-    return np.stack([across, down, np.ones_like(across)], axis=-1), depth

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
-from cli.cameras.shot import Mount, Shot, rays
+from cli.cameras.shot import Mount, Shot
 from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
 from common.rendering.raycast import cast
 from common.robot.joints import ARM
 from common.robot.model import RobotKinematics, arm_limits, home_arm, subtree
+from common.robot.pictures import depths, rays
 
 SMOOTH, JUMP = 7, 0.03
 """Side [px] of the window over which a surface's normal is taken, and change of depth [m] within it that is an edge."""
@@ -88,10 +89,10 @@ class Room:
         self._rotation = nominal @ Rotation.from_rotvec(mount.turn).as_matrix()
         self._position = np.array(image.position) + nominal @ mount.offset
         self._focal, self._middle = (image.fx, image.fy), (image.cx, image.cy)
-        ahead = rays(image, 1)[0]
-        depths = np.array([rays(each, 1)[1] for each in images])
-        behind = (depths > 0.0) & (depths > depths.max(axis=0) - JUMP)
-        depth = (depths * behind).sum(axis=0) / np.maximum(behind.sum(axis=0), 1)
+        ahead = rays(image)
+        seen = np.array([depths(each) for each in images], np.float64)
+        behind = (seen > 0.0) & (seen > seen.max(axis=0) - JUMP)
+        depth = (seen * behind).sum(axis=0) / np.maximum(behind.sum(axis=0), 1)
         smooth = ndimage.median_filter(depth, SMOOTH)
         self._depth = np.where(np.abs(smooth - depth) < JUMP, smooth, 0.0)
         points = (ahead * self._depth[..., None]) @ self._rotation.T + self._position

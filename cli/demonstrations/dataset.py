@@ -23,6 +23,7 @@ from cli.demonstrations.statistics import Statistics, merged, of_pictures, of_va
 from cli.errors import CliError
 from common.demonstration import ACTION, STATE
 from common.files.atomic_file import replace
+from common.rendering.encode import jpeg
 
 VERSION = "v3.0"
 CHUNK = 1000
@@ -188,9 +189,7 @@ def _column(values: Any) -> pa.Array:
 
 
 def _jpeg(picture: Picture) -> bytes:
-    out = io.BytesIO()
-    Image.frombytes("RGB", (picture.width, picture.height), picture.rgb).save(out, "JPEG", quality=JPEG_QUALITY)
-    return out.getvalue()
+    return jpeg(Image.frombytes("RGB", (picture.width, picture.height), picture.rgb), JPEG_QUALITY)
 
 
 def _task_table(tasks: Sequence[str]) -> pa.Table:

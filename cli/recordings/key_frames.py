@@ -1,19 +1,18 @@
 """Key frames of a mission: the recorded world as a free camera beside the robot sees it when each state ends."""
 
 import base64
-import io
 from bisect import bisect_right
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from cli.errors import CliError
 from common import topics
 from common.bus import codec
 from common.recording import Recording
+from common.rendering.encode import jpeg
 from common.rendering.free_camera import free_view
 from common.rendering.renderer import Renderer
 
@@ -75,9 +74,7 @@ def key_frames(recording: Recording, record: dict[str, Any]) -> list[tuple[float
     world, found = RecordedWorld(recording), []
     try:
         for t, words in moments[::-step][::-1]:
-            file = io.BytesIO()
-            Image.fromarray(world.at(t, *SIZE)).save(file, "JPEG", quality=QUALITY)
-            shown = base64.b64encode(file.getvalue()).decode("ascii")
+            shown = base64.b64encode(jpeg(world.at(t, *SIZE), QUALITY)).decode("ascii")
             found.append((t - float(record["started"]), words, shown))
     finally:
         world.close()

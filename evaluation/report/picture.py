@@ -1,17 +1,15 @@
 """A picture of how a case ended, for the gallery of failures."""
 
 import base64
-import io
 from collections.abc import Callable
-
-from PIL import Image
 
 from common import topics
 from common.bus import codec
+from common.rendering.encode import jpeg
 from common.rendering.free_camera import free_view
 from common.rendering.renderer import Renderer
 
-WIDTH, HEIGHT = 420, 300
+WIDTH, HEIGHT, QUALITY = 420, 300, 80
 """Size of the picture [px]; chosen: three beside each other in the report."""
 Get = Callable[[str], bytes | None]
 
@@ -34,6 +32,4 @@ def last_picture(get: Get) -> str:
         return ""
     finally:
         renderer.close()
-    file = io.BytesIO()
-    Image.fromarray(picture).save(file, "JPEG", quality=80)
-    return base64.b64encode(file.getvalue()).decode("ascii")
+    return base64.b64encode(jpeg(picture, QUALITY)).decode("ascii")

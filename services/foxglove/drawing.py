@@ -3,12 +3,10 @@
 Source: https://docs.foxglove.dev/docs/sdk/schemas
 """
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
 from foxglove import messages as fm
-from PIL import Image
 
 from common import messages as m
 from common.cells import unpacked
@@ -17,7 +15,9 @@ from common.household import Household
 from common.kinds import kind_of
 from common.messages.base import IDENTITY, Quat, Vec3
 from common.naming.colours import COLOURS, UNKNOWN_COLOUR
+from common.rendering.encode import jpeg
 from common.robot.frames import LIDAR, MAP, FramePose, optical_frame
+from common.robot.pictures import colours
 from common.robot.shapes import Shape
 
 QUALITY = 80
@@ -196,11 +196,9 @@ def image(message: m.Rgbd) -> Any:
     Raises:
         ValueError: not as many pixels as it says.
     """
-    picture = Image.frombytes("RGB", (message.width, message.height), message.rgb)
-    out = BytesIO()
-    picture.save(out, "JPEG", quality=QUALITY)
+    data = jpeg(colours(message), QUALITY)
     return fm.CompressedImage(
-        timestamp=timestamp(message.t), frame_id=optical_frame(message.camera), data=out.getvalue(), format="jpeg"
+        timestamp=timestamp(message.t), frame_id=optical_frame(message.camera), data=data, format="jpeg"
     )
 
 

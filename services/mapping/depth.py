@@ -13,6 +13,7 @@ from scipy import ndimage
 from common import messages as m
 from common.approach import FOOTPRINT
 from common.geometry import Array, cell_means, quat_matrix
+from common.robot.pictures import PictureError, depths, rays
 
 FLOOR_BAND = 0.06
 """Height [m] within which a pixel may be the floor before the camera's tilt is corrected: 1.5 degrees at 2 m."""
@@ -51,10 +52,6 @@ class Picture:
     low: Array
 
 
-class PictureError(ValueError):
-    """A picture that no camera takes; says why."""
-
-
 class CameraModel:
     """Points of pictures, without the robot's own body, which is what stays where it is however the base turns."""
 
@@ -69,7 +66,7 @@ class CameraModel:
 
     def learn(self, image: m.Rgbd) -> None:
         """One more picture from another heading."""
-        depth = _depth(image)
+        depth = depths(image)
         near, far = np.where(depth > 0, depth, np.inf), np.where(depth > 0, depth, -np.inf)
         if self._nearest is None or self._nearest.shape != depth.shape:
             self._nearest, self._farthest, self._count = near, far, 1
@@ -99,16 +96,12 @@ class CameraModel:
         Raises:
             PictureError: its data do not have its size, or what a camera does not have.
         """
-        depth = _depth(image)
+        depth = depths(image)
         numbers = (image.cx, image.cy, *image.position, *image.orientation)
         if not (0.0 < image.fx < MAX_VALUE and 0.0 < image.fy < MAX_VALUE and all(abs(v) < MAX_VALUE for v in numbers)):
             raise PictureError("a picture without a focal length or a pose")
-        h, w = depth.shape
-        depth = np.where(self.own((h, w)), 0.0, depth)
-        u = (np.arange(w) + 0.5 - image.cx) / image.fx
-        v = (np.arange(h) + 0.5 - image.cy) / image.fy
-        local = np.stack([np.broadcast_to(u, (h, w)), np.broadcast_to(v[:, None], (h, w)), np.ones((h, w))], axis=-1)
-        points = (local * depth[..., None]) @ quat_matrix(image.orientation).T + np.array(image.position)
+        depth = np.where(self.own(depth.shape), 0.0, depth)
+        points = (rays(image) * depth[..., None]) @ quat_matrix(image.orientation).T + np.array(image.position)
         # What is where the base stands is the robot, whatever the mask of its own pixels has missed at the arm's rim.
         seen = (depth > 0.0) & (depth < FAR) & (np.hypot(points[..., 0], points[..., 1]) > FOOTPRINT)
         points = _levelled(points, seen, np.array(image.position))
@@ -129,13 +122,6 @@ def _level(points: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     beside = ndimage.uniform_filter(np.where(inner, points[..., 2], 0.0), size) / np.maximum(share, 1e-9)
     edge = seen & (share > 2.5 / size**2) & (np.abs(points[..., 2] - beside) < SAME_HEIGHT)
     return np.asarray(inner | edge)
-
-
-def _depth(image: m.Rgbd) -> NDArray[np.float32]:
-    depth = np.frombuffer(image.depth, "<u2")
-    if depth.size != image.width * image.height:
-        raise PictureError(f"{depth.size} depths for {image.width} x {image.height} pixels")
-    return depth.reshape(image.height, image.width).astype(np.float32) * np.float32(0.001)
 
 
 def _levelled(points: Array, seen: NDArray[np.bool_], eye: Array) -> Array:

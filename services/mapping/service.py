@@ -15,10 +15,10 @@ from common import topics
 from common.bus.port import Io, Job
 from common.files.map_file import MapError
 from common.geometry import Pose2, compose
+from common.robot.pictures import PictureError
 from common.runtime import StartError
 from services.mapping.barriers import Met
 from services.mapping.config import MappingConfig
-from services.mapping.depth import PictureError
 from services.mapping.exploration import Exploration
 from services.mapping.mapper import Mapper
 from services.mapping.odometry import OdometryBuffer

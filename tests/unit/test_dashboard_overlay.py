@@ -5,6 +5,7 @@ import pytest
 
 from common import messages as m
 from common.geometry import matrix_quat
+from common.robot.pictures import PictureError
 from services.dashboard.panels.cameras import boxes, marked
 
 # A camera 1 m above the base's origin that looks along its x axis.
@@ -60,4 +61,5 @@ def test_a_frame_is_drawn() -> None:
 def test_a_picture_of_another_size_than_it_says_is_refused() -> None:
     broken = image(2.0)
     broken.rgb = broken.rgb[:-1]
-    assert marked(broken, (0.0, 0.0, 0.0), []) is None
+    with pytest.raises(PictureError):
+        marked(broken, (0.0, 0.0, 0.0), [])

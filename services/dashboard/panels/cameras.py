@@ -9,6 +9,7 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, quat_matrix, yaw_matrix
 from common.picture_requests import PICTURES, PictureRequests
+from common.robot.pictures import PictureError, colours, depths
 from services.dashboard.config import DashboardConfig
 from services.dashboard.panels.widgets import Panels
 
@@ -38,11 +39,10 @@ class Cameras:
             due = now - self._shown.get(name, float("-inf")) >= 0.9 / self._config.camera_rate
             for image in self._io.take_all(topic) if due else ():
                 self._shown[name] = now
-                pixels = marked(image, base, world.objects if world is not None else [])
-                if pixels is None:
-                    self._io.count_drop(topic.key, "not as many pixels as it says")
-                else:
-                    self._panels.picture(name, pixels)
+                try:
+                    self._panels.picture(name, marked(image, base, world.objects if world is not None else []))
+                except PictureError as error:
+                    self._io.count_drop(topic.key, str(error))
         self._requests.step(now, {*wanted.values()})
 
 
@@ -51,7 +51,7 @@ def boxes(
     image: m.Rgbd, base: Pose2, objects: list[m.WorldObject]
 ) -> list[tuple[str, tuple[float, float, float, float]]]:
     """Label and (left, top, right, bottom) in pixels of every believed object that is in the picture and in sight."""
-    depth = np.frombuffer(image.depth, "<u2").reshape(image.height, image.width) / 1000.0
+    depth = depths(image)
     turn, level = quat_matrix(image.orientation), yaw_matrix(base[2])
     found = []
     for one in objects:
@@ -72,12 +72,13 @@ def boxes(
     return found
 
 
-def marked(image: m.Rgbd, base: Pose2, objects: list[m.WorldObject]) -> NDArray[np.uint8] | None:
-    """The picture (height, width, 3) with the believed objects framed; None when its size is wrong."""
-    pixels = image.width * image.height
-    if len(image.rgb) != 3 * pixels or len(image.depth) != 2 * pixels:
-        return None
-    canvas = Image.frombytes("RGB", (image.width, image.height), image.rgb)
+def marked(image: m.Rgbd, base: Pose2, objects: list[m.WorldObject]) -> NDArray[np.uint8]:
+    """The picture (height, width, 3) with the believed objects framed.
+
+    Raises:
+        PictureError: not as many pixels as it says.
+    """
+    canvas = Image.fromarray(colours(image))
     pen = ImageDraw.Draw(canvas)
     for label, (left, top, right, bottom) in boxes(image, base, objects):
         pen.rectangle((left, top, right, bottom), outline=COLOUR)

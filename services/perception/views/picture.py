@@ -1,9 +1,6 @@
 """A view as a small picture for people. Pure."""
 
-import io
-
-from PIL import Image
-
+from common.rendering import encode
 from services.perception.views.view import View
 
 WIDTH = 320
@@ -15,6 +12,4 @@ QUALITY = 75
 def jpeg(view: View) -> bytes:
     """The colours of a view, at most WIDTH pixels wide."""
     step = max(1, -(-view.shape[1] // WIDTH))
-    file = io.BytesIO()
-    Image.fromarray(view.rgb[::step, ::step]).save(file, "JPEG", quality=QUALITY)
-    return file.getvalue()
+    return encode.jpeg(view.rgb[::step, ::step], QUALITY)

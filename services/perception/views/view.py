@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from common.geometry import Array, Pose2, quat_matrix, yaw_matrix
 from common.messages import Rgbd
+from common.robot.pictures import colours, depths
 from services.perception.views import colour
 
 Mask = NDArray[np.bool_]
@@ -93,15 +94,10 @@ def view_of(image: Rgbd, base: Pose2) -> View:
     Raises:
         ValueError: the image's data do not have its size.
     """
-    h, w = image.height, image.width
-    rgb = np.frombuffer(image.rgb, np.uint8)
-    depth = np.frombuffer(image.depth, "<u2")
-    if rgb.size != h * w * 3 or depth.size != h * w:
-        raise ValueError(f"an image of {w} x {h} with {rgb.size} bytes of colour and {depth.size} depths")
     turn = yaw_matrix(base[2])
     return View(
-        rgb=rgb.reshape(h, w, 3),
-        depth=(depth.reshape(h, w) * np.float32(0.001)),
+        rgb=colours(image),
+        depth=depths(image),
         focal=(image.fx, image.fy),
         middle=(image.cx, image.cy),
         position=turn @ np.array(image.position) + np.array([base[0], base[1], 0.0]),

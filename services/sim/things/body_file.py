@@ -5,7 +5,6 @@ collide are. A file without colliding geoms, and a hollow mesh that is looked at
 looks like: by CoACD (the extra `convex`), or else the convex hull.
 """
 
-import io
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from PIL import Image
 
 from common.files.body_file import load, middle, standing
 from common.geometry import Array
+from common.rendering.encode import png
 from common.scene import ObjectSpec, body_name
 from services.sim.robot import HULL_GROUP
 from services.sim.things.convex import hollow, parts
@@ -210,9 +210,7 @@ def _png(model: Any, number: int) -> bytes:
     data = np.array(model.tex_data[at : at + width * height * depth], np.uint8).reshape(height, width, depth)
     image = Image.fromarray(np.ascontiguousarray(data[..., :3]))
     image.thumbnail((PIXELS, PIXELS), Image.Resampling.LANCZOS)
-    stream = io.BytesIO()
-    image.save(stream, "PNG")
-    return stream.getvalue()
+    return png(image)
 
 
 def _text(values: Any, digits: int = 0) -> str:

@@ -1,12 +1,11 @@
 """What floors, walls and table tops are made of: pictures that repeat every metre. Pure."""
 
-import io
 from functools import cache
 
 import numpy as np
-from PIL import Image
 
 from common.geometry import Array
+from common.rendering.encode import png
 
 SIZE = 256
 """Pixels of a metre: 4 mm each, finer than a camera sees from 1 m."""
@@ -32,9 +31,7 @@ def picture(finish: str) -> bytes:
     grain = ndimage.gaussian_filter(rng.standard_normal((SIZE, SIZE)), stretch, mode="wrap")
     shade = 1.0 + depth * grain / grain.std() + _pattern(finish, rng)
     levels = np.clip(np.array(GROUND[finish]) * np.clip(shade, 0.3, 1.3)[..., None], 0, 255).astype(np.uint8)
-    stream = io.BytesIO()
-    Image.fromarray(levels).save(stream, "PNG")
-    return stream.getvalue()
+    return png(levels)
 
 
 def _pattern(finish: str, rng: np.random.Generator) -> Array:

@@ -1,10 +1,10 @@
 """Pictures for the outsides of things: a ground colour, a pattern, and print. Pure."""
 
-import io
 from functools import cache
 
 from PIL import Image, ImageDraw, ImageFont
 
+from common.rendering.encode import png
 from common.scene import Pattern
 
 Rgb = tuple[int, int, int]
@@ -49,7 +49,7 @@ def around(label: str, ground: Rgb, second: Rgb, pattern: Pattern, round_by: flo
     trim = round(size[1] * TRIM / (1 - TRIM))
     whole = Image.new("RGB", (size[0], size[1] + trim), second)
     whole.paste(image, (0, trim))
-    return _png(whole)
+    return png(whole)
 
 
 def sides(
@@ -72,7 +72,7 @@ def sides(
             centre, room = (true[0] / 2, true[1] / 2), (0.8 * true[0], 0.5 * true[1])
             _print(image, label, centre, room, ground, second, pattern)
         atlas.paste(image.resize((cell, cell), Image.Resampling.LANCZOS), ((n % 3) * cell, (n // 3) * cell))
-    return _png(atlas)
+    return png(atlas)
 
 
 def _ground(size: tuple[int, int], ground: Rgb, second: Rgb, pattern: Pattern) -> Image.Image:
@@ -142,9 +142,3 @@ def _size(lines: list[str], room: tuple[float, float]) -> int:
     probe = _font(100)
     wide = max(probe.getlength(line) for line in lines)
     return int(min(100 * room[0] / max(wide, 1.0), room[1] / (1.15 * len(lines))))
-
-
-def _png(image: Image.Image) -> bytes:
-    stream = io.BytesIO()
-    image.save(stream, "PNG", compress_level=6)
-    return stream.getvalue()

@@ -7,7 +7,6 @@ is no number of a mark is not believed.
 import asyncio
 import base64
 import importlib.util
-import io
 import re
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from common.rendering.encode import jpeg
 from services.perception.naming.grounders.grounder import Candidate, Choice, GrounderError, Question
 
 TRIES = 2
@@ -131,9 +131,7 @@ def marked(picture: NDArray[np.uint8], candidates: tuple[Candidate, ...]) -> byt
         x, y = max(0, left - 2), max(0, top - height - 6)
         draw.rectangle((x, y, x + width + 6, y + height + 4), fill=colour)
         draw.text((x + 3, y + 1), text, font=font, fill=(255, 255, 255))
-    file = io.BytesIO()
-    image.save(file, "JPEG", quality=QUALITY)
-    return file.getvalue()
+    return jpeg(image, QUALITY)
 
 
 def _content(phrase: str, picture: bytes) -> list[dict[str, Any]]:
