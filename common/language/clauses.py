@@ -5,7 +5,8 @@ import re
 from common.language.contractions import expand
 from common.language.lexicon import A_VERB
 from common.language.normalise import normalise
-from common.language.politeness import LONG_SPEECH, without_lead, without_politeness
+from common.language.politeness import without_lead, without_politeness
+from common.language.speeches import LONG_SPEECH, TO_BE_SAID
 
 _FILLER = re.compile(
     r"\s*\b(?:u+m+|(?<!^uh )u+h+(?!,? huh\b| uh$)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
@@ -41,7 +42,9 @@ def without_fillers(text: str) -> str:
     """Normalised text without `um`, `er` and words said twice; what is to be said stays as it is."""
     if LONG_SPEECH.match(without_lead(text)):
         return text
-    return _STUTTER.sub(lambda twice: twice[1] or twice[2], _FILLER.sub("", text)).strip(" ,")
+    said = TO_BE_SAID.search(text)
+    head, tail = (text[: said.start()], text[said.start() :]) if said else (text, "")
+    return f"{_STUTTER.sub(lambda twice: twice[1] or twice[2], _FILLER.sub('', head))}{tail}".strip(" ,")
 
 
 def clauses(text: str) -> list[str]:

@@ -29,6 +29,14 @@ _TELL_NAME = (
     r"people|whoever|who|what|where|how|if|whether|that|this)\b)[a-z]+"
 )
 """Behind it stands what is to be said to somebody by name."""
+_STATE = (
+    "(?:cold|hot|warm|cool|dirty|filthy|empty|full|flat|off|rotten|mine|yours|ours|broken|wet|dry|bad|done|finished|"
+    "ready|old|stale|sour|mouldy|moldy|burnt|cracked|dusty|sticky|greasy|smelly|heavy|loose|stuck|lost|gone|missing|"
+    "open|closed|hungry|thirsty|tired|asleep|awake|ill|sick|sad|bored|hurt|crying|sleeping|leaking|dripping|ringing|"
+    "rubbish|trash|garbage|fragile|precious|dangerous|sharp|late|early|out|away|spare|useless|torn|ripped|worn|"
+    "chipped|clean|great|lovely|nice|fine|too \\w+)"
+)
+"""How something or somebody is, behind a short `is`: `the soup's cold`; other words there are things that it has."""
 _CONTRACTIONS = tuple(
     (re.compile(short), long)
     for short, long in (
@@ -67,6 +75,12 @@ _CONTRACTIONS = tuple(
         (r"\b(it|she|he|\w{3,})'s (?=(?:got|gone|been|ended)\b)", r"\1 has "),
         (r"\b(it|she|he)'s\b", r"\1 is"),
         (r"\b(\w{2,})'s (?=(?:a|an|the|in|on|at|not|so|too|very|coming|going|getting|here|there)\b)", r"\1 is "),
+        (
+            rf"(^|[,.;!?] |\b(?:and|so|but|because) )((?:the|my|our|that|this|your|his|her) (?:\w+ ){{0,2}}\w{{2,}})'s "
+            rf"(?=(?:(?:all|a bit|quite|completely|already|just|no|too|totally|getting) )*{_STATE}"
+            r"(?:[,.;!?]|$| (?:and|so|now|again|today|but|already|in|on|at|here|there)\b))",
+            r"\1\2 is ",
+        ),
         (r"^its (?=the|a|an|my|not|too|time|in|on)\b", "it is "),
         (r"\b(?:can't|cant|cannot)\b", "can not"),
         (r"\b(?:won't|wont)\b", "will not"),

@@ -14,8 +14,9 @@ from common.language.exchange import IsPlace, verb_first
 from common.language.lexicon import A_VERB, COMMANDING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
-from common.language.politeness import LONG_SPEECH, without_politeness
+from common.language.politeness import without_politeness
 from common.language.repairs import settled
+from common.language.speeches import LONG_SPEECH, as_speech
 from common.language.timing import in_time
 
 _FIRST = re.compile(
@@ -96,7 +97,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
     text = _WHAT_IS_HELD.sub(r"\g<verb>it", text)
     listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
-    whole = without_fillers(expand(normalise(listed, ",;.!?")))
+    whole = without_fillers(as_speech(expand(normalise(listed, ",;.!?"))))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):

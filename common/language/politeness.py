@@ -8,6 +8,7 @@ import re
 
 from common.language.frame import without_frame, without_frame_behind
 from common.language.lexicon import A_VERB, FAMILY
+from common.language.speeches import LONG_SPEECH
 
 _ADVERBS = (
     r"(?: "
@@ -123,8 +124,8 @@ _FRAMES = (
     r"you(?= (?:bring|give|take(?= .+ (?:to|from|off|out|into|and|up)\b)|go|get|fetch|throw|find|come|carry|move|"
     r"clean|tidy|grab|pick)\b"
     r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
-    rf"you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|ought to|are going to|shall|"
-    r"will)",
+    rf"you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|ought to|"
+    r"are (?:free|welcome) to|are going to|shall|will)",
     rf"(?:(?:would|will|could|might) it(?: be)?|is it(?= [^,]* if you)) (?:{_ANY_WORD}){{1,5}}?(?:if you(?: {_CAN})?|"
     rf"if i ask(?:ed)? you to|(?:for you )?to|that you)(?= (?:{_ANY_WORD})?(?:{A_VERB}|have|get)\b)",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
@@ -218,19 +219,6 @@ _FOR_ME = re.compile(
     r"please$|$| and | then )"
 )
 """Taking something for somebody is bringing it."""
-LONG_SPEECH = re.compile(
-    r"^(?:(?:say|announce)(?: that)?|(?:shout|yell|call)(?: out)? that|tell (?:them|everybody|everyone|people|"
-    r"us|me) that|"
-    r"tell (?:everybody|everyone|people) in (?:the|my|our) \w+(?: \w+)? that|"
-    r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
-    r"which)\b)|"
-    r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
-    rf"tell {_FAMILY}(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
-    r"tell whoever is (?:in|at) (?:the|my|our) \w+(?: \w+)? (?:that|to)|repeat after me,?|"
-    r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?|inform (?:everyone|everybody|them|"
-    r"people)(?: that)?)\s+(.+)$"
-)
-"""A clause whose words are to be spoken and not understood."""
 FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")
 """A frame, which makes a request of what follows."""
 

@@ -104,7 +104,7 @@ _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
-    text = refined(apposed(_without_lead(text)))
+    text = refined(apposed(_without_lead(text, is_place)))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(text)
     if (found := _NOT_THAT_ONE.match(text)) and not _SEVERAL.search(found["said"]):
@@ -183,7 +183,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
     return text
 
 
-def _without_lead(text: str) -> str:
+def _without_lead(text: str, is_place: IsPlace) -> str:
     """The text without words before its first comma that name nothing, such as `yo, could you ...`."""
     head, comma, rest = text.partition(",")
     words = without_politeness(head).split()
@@ -193,6 +193,7 @@ def _without_lead(text: str) -> str:
         and strange
         and not verb_first(head)
         and not PREPOSITIONS & set(words[:1])
+        and not is_place(tuple(words))
         and " " in rest.strip()
         and verb_first(without_politeness(rest))
     ):

@@ -12,11 +12,13 @@ from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent, handled_before
-from services.planner.reference.relations import BESIDE, between
+from services.planner.reference.relations import between
 from services.planner.reference.resolve import referent, referents
 from services.planner.world import BelievedObject
 
 RELEASED = PlanStep(action="release")
+SIDE_BY_SIDE = 0.3
+"""Farthest apart two things are put beside each other by doing nothing [m] (chosen: two hands' width)."""
 _OVER = ["return", "release"]
 """What is done with a thing in the hand to hand it over."""
 
@@ -187,7 +189,7 @@ def named_at(builder: PlanBuilder, slots: Slots) -> None:
 def _put(builder: PlanBuilder, meant: Referent, where: Receptacle, near: BelievedObject | None = None) -> None:
     """On a receptacle, next to what stands `near` there, but into a bin anywhere; what is there already stays."""
     item, near = meant.object, None if where.depth else near
-    if item.on == where.name and not item.held and (near is None or between(item, near) < BESIDE):
+    if item.on == where.name and not item.held and (near is None or between(item, near) < SIDE_BY_SIDE):
         builder.say(f"The {item.label} is there already.")
         builder.last = [item]
         return

@@ -14,12 +14,14 @@ from services.planner.reference.resolve import referent, referents
 
 _GREETED = re.compile(
     r"^(?P<words>hello|hi|good (?:morning|afternoon|evening|night)|goodbye|bye|sorry|thank you|thanks) "
-    r"to (?P<whom>\w.*)$"
+    r"to (?P<whom>(?!him\b|her\b|them\b)\w.*)$"
 )
 """`hello to anna`: whom a courtesy is for is spoken to."""
 _MANNER = re.compile(
     r"^(?:(?:loudly|softly|quietly|clearly|aloud|out loud) |the words? (?=\w))+"
-    r"| (?:(?:(?:really|very|out) )?loud|aloud|loudly|softly|for me|in (?:your|a) (?:\w+ ){0,2}voice)$"
+    r"| (?:(?:(?:really|very|out) )?loud|aloud|loudly|softly|for me|to (?:him|her|them)|"
+    r"so (?:that )?.+ (?:hears?|knows?)(?: it| that| you| me)?|"
+    r"in (?:your|a) (?:\w+ ){0,2}voice)$"
 )
 """How something is to be said, which is not said with it."""
 
@@ -39,6 +41,9 @@ def go(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def come_back(builder: PlanBuilder, slots: Slots) -> None:
+    """Home, unless the plan has just handed something over there."""
+    if [step.action for step in builder.steps[-2:]] == ["return", "release"]:
+        return
     builder.go(Spot(builder.world.household.home.name, home=True))
 
 

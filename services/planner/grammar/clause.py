@@ -17,6 +17,12 @@ MAX_EFFORT = 120
 _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
 
 
+_WHERETO = frozenset({"to", "onto", "into", "on", "in", "at", "next", "beside", "near"})
+"""Words before a place where something is to be put."""
+_POINTING = frozenset({"it", "this", "that", "one"})
+"""Last words of what only points at the thing in the hand."""
+
+
 class _Failure(Exception):
     """`at`: how many words were understood before it."""
 
@@ -117,6 +123,8 @@ def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> Re
     reason = apply_first(words, builder, "command", "reply")
     if not isinstance(reason, NoWording):
         return reason
+    if where := _where_to_put(words, builder):
+        return apply_first(where, builder, "name")
     if alone:
         return apply_first(words, builder, "name")
     if (verb in ("go", "drive", "come", "head", "visit") or before[1:2] == ("by",)) and builder.vocabulary.spot(words):
@@ -125,6 +133,17 @@ def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> Re
         # "put the mug on the table and the can on the counter": the verb is said once.
         return apply_first(_completed(words, before, builder), builder, "command", "reply")
     return reason
+
+
+def _where_to_put(words: Words, builder: PlanBuilder) -> Words:
+    """`to the dresser`, where no more is said than where the thing in the hand is to go; also of `dresser for that`."""
+    if builder.world.held is None or builder.steps:
+        return ()
+    if words[0] in _WHERETO:
+        return words
+    place = words[: words.index("for")] if "for" in words and words[-1] in _POINTING else words
+    spots = builder.vocabulary.spot(place) if place else []
+    return ("on", *place) if spots and spots[0].receptacle else ()
 
 
 def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:

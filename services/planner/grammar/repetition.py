@@ -26,7 +26,8 @@ _NO_BARE = re.compile(
     r"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?:the |my )?(?P<place>\w+(?: \w+){0,2}?)(?: please)?$"
 )
 _ELSEWHERE = re.compile(
-    r"^(?:try|check|(?:have )?(?:you )?(?:look|looked|tried|search|searched)|what about|how about|maybe|perhaps|"
+    r"^(?:try|check|(?:(?:have|take) (?:a|another) )?(?:quick )?(?:look|peek|search)|"
+    r"(?:have )?(?:you )?(?:looked|tried|searched)|what about|how about|maybe|perhaps|"
     r"(?:maybe |perhaps |i think )?(?:it|they) (?:is|are|might be|may be|could be|must be|should be))"
     r"(?: (?:in|on|at|inside))? (?:the|my|our) (?P<place>\w+(?: \w+){0,2})$"
 )
@@ -50,6 +51,9 @@ _QUANTITIES = frozenset({"all", "both", "other", "another", "every", "any"})
 def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPlace) -> str:
     """The command that is meant, by the last one where it refers to that; else the command as it is."""
     last = told.last.command if told.last is not None else ""
+    outcome = told.last.outcome if told.last is not None else ""
+    if outcome == "failed" and clauses and (place := _elsewhere(clauses[-1], is_place)):
+        return _from(normalise(last).split(), place)
     if not last or len(clauses) != 1:
         return command
     for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
@@ -64,9 +68,6 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         in DETERMINERS | PREPOSITIONS
     ):
         return replaced(normalise(last), rest, is_place) or command
-    outcome = told.last.outcome if told.last is not None else ""
-    if outcome == "failed" and (place := _elsewhere(clauses[0], is_place)):
-        return _from(normalise(last).split(), place)
     if outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):
         return other
     if found := _TOO.match(without_politeness_at_end(command)):

@@ -1,0 +1,56 @@
+"""What is to be said: words that are spoken as they stand, and the ways to ask for them. Pure."""
+
+import re
+
+from common.language.lexicon import FAMILY
+
+_FAMILY = FAMILY.replace(" ", "")
+_WHOM = (
+    r"(?:them|him|her|everyone|everybody|people|the others|"
+    rf"(?:the|my|our) (?!robot\b|machine\b|vacuum\b)\w+|{_FAMILY})"
+)
+_BEGIN = r"(?P<before>^|[,.;!?] |\b(?:and|then|please|(?:can|could|would|will) you) )"
+_TOLD_TO_DO = re.compile(
+    rf"{_BEGIN}(?:tell|ask|remind|warn) (?P<whom>{_WHOM}(?: (?:in|at) (?:the|my|our) \w+(?: room)?)?) to "
+    r"(?P<what>(?!me\b|us\b)\w.*)$"
+)
+"""What somebody is to be told to do."""
+_CRIED = re.compile(
+    rf"{_BEGIN}(?:(?:shout|yell|holler|cry|call)(?: out)?(?: (?:loudly|please))*(?P<mark>,| that)"
+    r"|(?:shout|yell|holler|cry)(?: out)?) (?!at\b|for\b|if\b|when\b|to\b|out\b)(?=\w)"
+)
+_CEREMONY = re.compile(
+    rf"{_BEGIN}(?P<verb>say|announce|declare|proclaim)(?:,? (?:please|kindly|loudly|aloud|out loud|the following|"
+    r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))))*, (?=\w)"
+)
+"""A verb of saying with a mark before what is said."""
+_THEIRS = re.compile(r"\b(?:their|his|her)\b")
+LONG_SPEECH = re.compile(
+    r"^(?:(?:say|announce)(?: that)?|(?:shout|yell|call)(?: out)? that|tell (?:them|everybody|everyone|people|"
+    r"us|me) that|"
+    r"tell (?:everybody|everyone|people) in (?:the|my|our) \w+(?: \w+)? that|"
+    r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
+    r"which)\b)|"
+    r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
+    rf"tell {_FAMILY}(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
+    r"tell whoever is (?:in|at) (?:the|my|our) \w+(?: \w+)? (?:that|to)|repeat after me,?|"
+    r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?|inform (?:everyone|everybody|them|"
+    r"people)(?: that)?)\s+(.+)$"
+)
+"""A clause whose words are to be spoken and not understood."""
+
+TO_BE_SAID = re.compile(r"(?:^|(?<=[,.;!?] )|(?<= and )|(?<= then )|(?<=please )|(?<= you ))(?:say|announce) ")
+"""Behind it stands what is to be said."""
+
+
+def as_speech(text: str) -> str:
+    """Normalised text with what is to be said behind `say` and `tell them`: `shout dinner`, `tell mum to come`."""
+    text = _TOLD_TO_DO.sub(_told, text)
+    return _CEREMONY.sub(r"\g<before>say ", _CRIED.sub(r"\g<before>say ", text))
+
+
+def _told(found: re.Match[str]) -> str:
+    """`tell the boys to brush their teeth` as what is said to them."""
+    where = re.search(r" (?:in|at) (?:the|my|our) .+$", found["whom"])
+    place = where[0] if where else ""
+    return f"{found['before']}tell them{place} {_THEIRS.sub('your', found['what'], count=1)}"

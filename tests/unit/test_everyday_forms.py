@@ -1,0 +1,39 @@
+"""Forms of everyday sentences, each with what is right in the notation of tests/data/sentences.tsv."""
+
+import pytest
+
+from tests.everyday import Sentence, understand, verdict
+
+
+@pytest.mark.parametrize(
+    ("context", "said", "right"),
+    [
+        # What is to be said, with a mark, to somebody, or as what somebody is to do.
+        ("-", "shout dinner is on the table", "say(dinner is on the table)"),
+        ("-", "announce, please: the bus is here", "say(the bus is here)"),
+        ("-", "go to the desk and say knock knock", "goto(desk); say(knock knock)"),
+        ("-", "tell the boys to brush their teeth", "say(brush your teeth)"),
+        ("-", "ask the kids to come to the table", "say(come to the table)"),
+        ("-", "say sweet dreams to him", "say(sweet dreams)"),
+        ("-", "can you yell lunchtime so the girls hear it", "say(lunchtime)"),
+        # How something is, with a short "is".
+        ("-", "the red ball's flat, chuck it", "put(red ball, bin)"),
+        ("-", "the milk's off, throw it away", "put(milk, bin)"),
+        ("-", "the dog's lead is gone, find it", "find(dog's lead)"),
+        # Where what is in the hand is to go, without a verb.
+        ("held:green can", "bin, it's empty", "put(green can, bin)"),
+        ("held:blue mug", "to the dresser, and gently please", "put(blue mug, dresser)"),
+        ("held:red can", "counter for that", "put(red can, counter)"),
+        ("held:apple", "desk, and after that you are free to go home", "put(apple, desk); return()"),
+        # Beside each other is nearer than on the same surface.
+        ("-", "stand the red can next to the yellow bowl", "put(red can, counter near yellow bowl)"),
+        # What has been handed over needs no further coming.
+        ("-", "bottle, the green one, over to me", "fetch(green bottle)"),
+        # Where to look for what was not found.
+        ("failed:find my keys", "perhaps they fell behind something. check the bedroom", "goto(bedroom); find(keys)"),
+    ],
+)
+def test_the_form_is_understood(context: str, said: str, right: str) -> None:
+    sentence = Sentence(context, said, right)
+    found = understand(sentence)
+    assert verdict(sentence, found) == "right", found
