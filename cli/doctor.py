@@ -17,6 +17,7 @@ import msgspec
 
 from cli.errors import CliError
 from cli.keys.authority import Authority
+from cli.output import show
 from cli.processes.ports import listener, port_is_free
 from cli.processes.programs import said_by
 from cli.processes.supervision import Supervision, run_dir
@@ -211,13 +212,8 @@ def language_model() -> Iterator[Finding]:
 def doctor(args: argparse.Namespace) -> int:
     looks = (python, packages, speech, graphics, audio, port, certificates, machine, robots, language_model)
     findings = [f for look in looks for f in look()]
-    if args.json:
-        print(msgspec.json.encode(findings).decode())
-    else:
-        for f in findings:
-            print(f"{f.level:5}  {f.what:21} {f.state}")
-            if f.fix:
-                print(f"{'':7}{'':21} -> {f.fix}")
+    lines = [(f"{f.level:5}  {f.what:21} {f.state}", f"{'':28} -> {f.fix}" if f.fix else "") for f in findings]
+    show(args, findings, (line for both in lines for line in both if line))
     bad = [f.what for f in findings if f.level == "error"]
     if bad:
         raise CliError(f"the robot cannot run here: {', '.join(bad)}")

@@ -13,6 +13,7 @@ import zenoh
 
 from cli.errors import CliError, near
 from cli.link import Link, known_keys, linked, robot_command
+from cli.output import show
 from cli.payload import line
 from common import messages as m
 from common import topics
@@ -55,16 +56,12 @@ def list_topics(args: argparse.Namespace) -> int:
         }
         for t in topics.TABLE
     ]
-    if args.json:
-        print(msgspec.json.encode(rows).decode())
-        return 0
-    print(f"{'key':28} {'payload':20} {'written by':22} {'rate':>6} {'keep':6} {'latched':7} encoding")
-    for r in rows:
-        rate = f"{r['rate']:g}" if r["rate"] else "event"
-        writers = ", ".join(r["writers"]) if isinstance(r["writers"], list) else ""
-        latched = "yes" if r["latched"] else ""
-        print(f"{r['key']:28} {r['type']:20} {writers:22} {rate:>6} {r['keep']:6} {latched:7} {r['encoding']}")
-    print("and of every service: service/<name>/health, service/<name>/alive (token), log/<name>")
+    lines = [f"{'key':28} {'payload':20} {'written by':22} {'rate':>6} {'keep':6} {'latched':7} encoding"]
+    for t, r in zip(topics.TABLE, rows, strict=True):
+        rate, latched = f"{t.rate:g}" if t.rate else "event", "yes" if t.latched else ""
+        writers = ", ".join(t.writers)
+        lines.append(f"{t.key:28} {r['type']:20} {writers:22} {rate:>6} {t.keep:6} {latched:7} {r['encoding']}")
+    show(args, rows, [*lines, "and of every service: service/<name>/health, service/<name>/alive (token), log/<name>"])
     return 0
 
 

@@ -5,12 +5,11 @@ It is asked only over the bus. Times are the driver's own (`t` of joint_states),
 
 import argparse
 
-import msgspec
-
 from cli.drivers.driver import STALL, Driver, Unmet
 from cli.drivers.requirements import LISTENING, MOVING
 from cli.errors import CliError
 from cli.link import linked, robot_command
+from cli.output import show
 from common import topics
 from common.time.clock import monotonic, sleep
 
@@ -47,13 +46,10 @@ def conform(args: argparse.Namespace) -> int:
                 f"{', '.join(rivals)} would steer as well; start the driver alone: tidybot up --only router,sim"
             )
         rows = examine(Driver(link), args.move)
-    if args.json:
-        print(msgspec.json.encode(rows).decode())
-    else:
-        for row in rows:
-            print(f"{'ok    ' if row['met'] else 'FAILED'}  {row['name']:13} {row['why'] or row['asks']}")
-        if not args.move:
-            print("not asked to move: `--move` adds driving 0.2 m, a turn of the wrist, the gripper and robot/stop")
+    lines = [f"{'ok    ' if row['met'] else 'FAILED'}  {row['name']:13} {row['why'] or row['asks']}" for row in rows]
+    if not args.move:
+        lines.append("not asked to move: `--move` adds driving 0.2 m, a turn of the wrist, the gripper and robot/stop")
+    show(args, rows, lines)
     return 0 if all(row["met"] for row in rows) else 1
 
 

@@ -16,6 +16,7 @@ from cli.fleet.dispatch import POLL, Dispatch
 from cli.fleet.radio import OTHERS, router_config
 from cli.fleet.robots import Desk, RobotNow
 from cli.link import address
+from cli.output import show
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
@@ -146,10 +147,7 @@ def stop(args: argparse.Namespace) -> int:
 
 
 def _say_who(what: str, names: set[str], args: argparse.Namespace) -> None:
-    if args.json:
-        print(msgspec.json.encode(sorted(names)).decode())
-    else:
-        print(f"{what}: {', '.join(shown(n) for n in sorted(names)) or 'nobody is there'}")
+    show(args, sorted(names), [f"{what}: {', '.join(shown(n) for n in sorted(names)) or 'nobody is there'}"])
 
 
 def recall(args: argparse.Namespace) -> int:

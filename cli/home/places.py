@@ -2,20 +2,26 @@
 
 import argparse
 
-import msgspec
-
 from cli.errors import CliError, near
 from cli.link import Link, add_options, fresh_id, linked
+from cli.output import show
 from common import messages as m
 from common import topics
 
+KINDS = ("room", "surface", "place")
 ANSWER = 10.0
 """Time [s] for the brain to answer: a step of it, on a machine that is busy."""
 
 
 def places(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _list(link.present(topics.HOUSEHOLD_PARTS).parts, args.json)
+        known = link.present(topics.HOUSEHOLD_PARTS).parts
+    lines = [
+        f"{p.name:28} {p.kind:8} {p.room:16} {'named by you' if p.given else ''}".rstrip()
+        for p in sorted(known, key=lambda p: (KINDS.index(p.kind), p.room, p.name))
+    ]
+    show(args, known, lines)
+    return 0
 
 
 def edit(args: argparse.Namespace) -> int:
@@ -24,21 +30,17 @@ def edit(args: argparse.Namespace) -> int:
         part = _part(link, args.part) if args.part else ""
         wish = m.HouseholdEdit(do=args.do, name=" ".join(args.name), part=part, kind=args.kind, id=fresh_id())
         result = link.ask(topics.HOUSEHOLD_EDIT, wish, topics.HOUSEHOLD_EDITED, ANSWER, "the brain")
-        print(msgspec.json.encode(result).decode() if args.json else told(wish, result))
+        show(args, result, [told(wish, result)])
         return 0 if result.ok else 1
 
 
 def rules(args: argparse.Namespace) -> int:
     with linked(args) as link:
         known = link.present(topics.HOUSEHOLD_EDITS)
-        if args.json:
-            print(msgspec.json.encode(known.rules).decode())
-            return 0
-        for rule in known.rules:
-            print(f"{rule.things:24} -> {' or '.join(rule.to)}")
-        if not known.rules:
-            print('nobody has told a rule; say "mugs go on the shelf", or `tidybot say "mugs go on the shelf"`')
-        return 0
+    lines = [f"{rule.things:24} -> {' or '.join(rule.to)}" for rule in known.rules]
+    none = 'nobody has told a rule; say "mugs go on the shelf", or `tidybot say "mugs go on the shelf"`'
+    show(args, known.rules, lines or [none])
+    return 0
 
 
 def _part(link: Link, wanted: str) -> str:
@@ -67,16 +69,6 @@ def told(edit: m.HouseholdEdit, result: m.EditResult) -> str:
             return f"no longer: {result.name} go to the {result.part}"
 
 
-def _list(known: list[m.HomePart], as_json: bool) -> int:
-    if as_json:
-        print(msgspec.json.encode(known).decode())
-        return 0
-    for kind in ("room", "surface", "place"):
-        for one in sorted((p for p in known if p.kind == kind), key=lambda p: (p.room, p.name)):
-            print(f"{one.name:28} {kind:8} {one.room:16} {'named by you' if one.given else ''}".rstrip())
-    return 0
-
-
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser("places", help="rooms, surfaces and places: list, name, rename, forget")
     parser.set_defaults(run=places)
@@ -84,7 +76,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     one = actions.add_parser("name", help="name the room that the robot is in, or the surface that it stands before")
     one.add_argument("name", nargs="+", help='what it is called, such as "kitchen" or "desk"')
     one.add_argument("--part", help="the part meant, by its present name")
-    one.add_argument("--kind", choices=("room", "surface", "place"), default="", help="where the name does not tell")
+    one.add_argument("--kind", choices=KINDS, default="", help="where the name does not tell")
     one.set_defaults(do="name")
     two = actions.add_parser("rename", help="give a part another name")
     two.add_argument("part", metavar="old")

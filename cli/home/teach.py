@@ -2,10 +2,9 @@
 
 import argparse
 
-import msgspec
-
 from cli.errors import CliError
 from cli.link import Link, fresh_id, linked, robot_command
+from cli.output import show
 from common import messages as m
 from common import topics
 
@@ -17,14 +16,14 @@ def teach(args: argparse.Namespace) -> int:
     name = " ".join(args.name)
     with linked(args) as link:
         if not name:
-            return _list(link, args.json)
+            return _list(link, args)
         label = _label(link, args.label) if args.label else ""
-        return _ask(link, m.TeachRequest(name=name, id=fresh_id(), label=label), args.json)
+        return _ask(link, m.TeachRequest(name=name, id=fresh_id(), label=label), args)
 
 
 def forget(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _ask(link, m.TeachRequest(name=" ".join(args.name), id=fresh_id(), forget=True), args.json)
+        return _ask(link, m.TeachRequest(name=" ".join(args.name), id=fresh_id(), forget=True), args)
 
 
 def _label(link: Link, wanted: str) -> str:
@@ -40,14 +39,10 @@ def _label(link: Link, wanted: str) -> str:
     return wanted
 
 
-def _ask(link: Link, request: m.TeachRequest, as_json: bool) -> int:
+def _ask(link: Link, request: m.TeachRequest, args: argparse.Namespace) -> int:
     result = link.ask(topics.TEACH, request, topics.TAUGHT, ANSWER, "perception")
-    if as_json:
-        print(msgspec.json.encode(result).decode())
-    elif result.ok:
-        print(f"forgotten: {result.name}" if request.forget else f"the {result.label} is the {result.name}")
-    else:
-        print(f"not done: {result.detail}{_remedy(result)}")
+    done = f"forgotten: {result.name}" if request.forget else f"the {result.label} is the {result.name}"
+    show(args, result, [done if result.ok else f"not done: {result.detail}{_remedy(result)}"])
     return 0 if result.ok else 1
 
 
@@ -63,16 +58,13 @@ def _remedy(result: m.TeachResult) -> str:
             return ""
 
 
-def _list(link: Link, as_json: bool) -> int:
-    known = link.present(topics.HOUSEHOLD_NAMES)
-    if as_json:
-        print(msgspec.json.encode(known.names).decode())
-        return 0
-    for one in known.names:
-        size = " x ".join(f"{v * 100:.0f}" for v in one.size)
-        print(f"{one.name:24} {one.colour} {one.kind}, {size} cm, {one.views} views")
-    if not known.names:
-        print('no names so far; put a thing before the robot and `tidybot teach "vitamin box"`')
+def _list(link: Link, args: argparse.Namespace) -> int:
+    known = link.present(topics.HOUSEHOLD_NAMES).names
+    lines = [
+        f"{o.name:24} {o.colour} {o.kind}, {' x '.join(f'{v * 100:.0f}' for v in o.size)} cm, {o.views} views"
+        for o in known
+    ]
+    show(args, known, lines or ['no names so far; put a thing before the robot and `tidybot teach "vitamin box"`'])
     return 0
 
 

@@ -5,10 +5,9 @@ import os
 import re
 from pathlib import Path
 
-import msgspec
-
 from cli.errors import CliError
 from cli.keys.authority import Authority, hosts_of
+from cli.output import show
 from cli.processes.services import NAMES
 from common.bus.session import check_namespace
 from common.security.access import AGENT, OPERATOR, ROUTER, Role, Subject
@@ -35,7 +34,7 @@ def keys(args: argparse.Namespace) -> int:
     authority = Authority(_directory(args))
     _check(args)
     if args.list:
-        return _show(authority, args.json)
+        return _list(authority, args)
     known = authority.subjects()
     asked = [_client(args)] if args.client else everybody(args.namespace, args.ros_domain)
     if args.force or not authority.exists:
@@ -120,28 +119,19 @@ def _give(authority: Authority, owner: int) -> None:
 def _report(authority: Authority, made: list[Subject], args: argparse.Namespace) -> None:
     names = {s.common_name for s in made}
     rows = [r for r in authority.rows() if r.name in names]
-    if args.json:
-        print(msgspec.json.encode({"directory": str(authority.directory), "made": rows}).decode())
-        return
-    if not made:
-        print(f"nothing was missing in {authority.directory}")
-        return
-    for row in rows:
-        print(f"{row.name:24} {row.role:9} until {row.expires}")
-    print(f"in {authority.directory}; a router that is up must be restarted (`tidybot restart router`)")
+    lines = [f"{row.name:24} {row.role:9} until {row.expires}" for row in rows]
+    lines.append(f"in {authority.directory}; a router that is up must be restarted (`tidybot restart router`)")
     if args.dir is None and not os.environ.get("TIDYBOT_KEYS"):
-        print("`tidybot up` uses them from now on; TIDYBOT_KEYS=off does without")
+        lines.append("`tidybot up` uses them from now on; TIDYBOT_KEYS=off does without")
+    found = {"directory": str(authority.directory), "made": rows}
+    show(args, found, lines if made else [f"nothing was missing in {authority.directory}"])
 
 
-def _show(authority: Authority, as_json: bool) -> int:
+def _list(authority: Authority, args: argparse.Namespace) -> int:
     if not authority.exists:
         raise CliError(f"no keys in {authority.directory}; `tidybot keys` makes them")
     rows = authority.rows()
-    if as_json:
-        print(msgspec.json.encode(rows).decode())
-        return 0
-    for row in rows:
-        print(f"{row.name:24} {row.role:9} until {row.expires}  {row.folder}")
+    show(args, rows, (f"{row.name:24} {row.role:9} until {row.expires}  {row.folder}" for row in rows))
     return 0
 
 

@@ -5,11 +5,10 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from cli.errors import CliError, near
 from cli.link import Link, linked, robot_command
 from cli.missions.journal import date_of
+from cli.output import show
 from common import topics
 
 WIDTH = 118
@@ -82,7 +81,7 @@ def explain(args: argparse.Namespace) -> int:
             raise CliError(f"{args.html}: {error.strerror}") from None
         print(args.html)
         return 0
-    print(msgspec.json.encode(record).decode() if args.json else told(record))
+    show(args, record, [told(record)])
     return 0
 
 

@@ -4,9 +4,8 @@ import argparse
 from datetime import datetime
 from typing import Any
 
-import msgspec
-
 from cli.link import linked, robot_command
+from cli.output import show
 from common import topics
 
 
@@ -31,10 +30,7 @@ def listed(rows: list[dict[str, Any]]) -> str:
 def missions(args: argparse.Namespace) -> int:
     with linked(args) as link:
         found = link.query(topics.BRAIN_MISSIONS)
-    if args.json:
-        print(msgspec.json.encode(found).decode())
-    else:
-        print(listed(found) if found else "no missions yet")
+    show(args, found, [listed(found) or "no missions yet"])
     return 0
 
 

@@ -1,15 +1,15 @@
 """`tidybot say` and `status`: commands to the robot and what becomes of them."""
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args
-
-import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import Watch, linked, robot_command
 from cli.missions.audio import recorded
 from cli.missions.conversation import ACCEPT, INSTEAD, KEPT, Answer, Conversation, Show, speak_into, typed
+from cli.output import show
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic
@@ -44,24 +44,21 @@ def say(args: argparse.Namespace) -> int:
         outcome = talk.outcome(args.timeout) if mission_id and args.wait else None
     if outcome is not None:
         record |= {"outcome": outcome.outcome, "reason": outcome.reason}
-    if args.json:
-        print(msgspec.json.encode(record).decode())
-    else:
-        _print_said(said, mission_id, why, outcome)
+    show(args, record, _told(said, mission_id, why, outcome))
     if not (mission_id or said) or (outcome is not None and outcome.outcome != "delivered"):
         return 1
     return 0
 
 
-def _print_said(said: str, mission_id: str, why: str, outcome: m.MissionOutcome | None) -> None:
+def _told(said: str, mission_id: str, why: str, outcome: m.MissionOutcome | None) -> Iterator[str]:
     if said:
-        print(said)
+        yield said
     if outcome is not None:
-        print(f"{outcome.outcome}{': ' + outcome.reason if outcome.reason else ''}")
+        yield f"{outcome.outcome}{': ' + outcome.reason if outcome.reason else ''}"
     elif mission_id:
-        print(f"mission {mission_id}")
+        yield f"mission {mission_id}"
     elif not said:
-        print(f"not accepted: {why}")
+        yield f"not accepted: {why}"
 
 
 def _shower(args: argparse.Namespace) -> Show:
@@ -109,23 +106,20 @@ def status(args: argparse.Namespace) -> int:
             state = watch.next(0.2) or state
         folded = link.latest(topics.SYSTEM_STATUS)
     record = status_record(state, folded)
-    if args.json:
-        print(msgspec.json.encode(record).decode())
-    else:
-        _print_status(record)
+    show(args, record, _status_told(record))
     if not reached:
         raise CliError(f"not {wanted} within {args.timeout:g} s")
     return 0
 
 
-def _print_status(record: dict[str, object]) -> None:
+def _status_told(record: dict[str, object]) -> Iterator[str]:
     detail = f"  {record['detail']}" if record["detail"] else ""
-    print(f"state    {record['state']}{detail}")
+    yield f"state    {record['state']}{detail}"
     for word, key in (("mission", "step"), ("last", "outcome")):
         value = record[word]
         if isinstance(value, dict):
             more = f" ({value['reason']})" if value.get("reason") else ""
-            print(f"{word:8} {value['id']}: {value['command']}: {value[key] or 'begins'}{more}")
+            yield (f"{word:8} {value['id']}: {value['command']}: {value[key] or 'begins'}{more}")
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

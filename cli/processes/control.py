@@ -2,12 +2,12 @@
 
 import argparse
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-
-import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import Link, use_keys
+from cli.output import show
 from cli.processes.services import NAMES
 from cli.processes.supervision import WORLD, Supervision, run_dir
 from common.bus.session import BusError, open_session
@@ -64,16 +64,17 @@ def memory(pid: int) -> tuple[float, float]:
 
 def ps(args: argparse.Namespace) -> int:
     found = rows(Supervision(run_dir()))
-    if args.json:
-        print(msgspec.json.encode(found).decode())
-        return 0
-    print(f"{'name':13} {'pid':>7}  {'state':9} {'restarts':>8}  {'alive':5} {'MB':>7}  epoch")
+    show(args, found, _table(found))
+    return 0
+
+
+def _table(found: list[dict[str, object]]) -> Iterator[str]:
+    yield f"{'name':13} {'pid':>7}  {'state':9} {'restarts':>8}  {'alive':5} {'MB':>7}  epoch"
     for r in found:
         alive = "yes" if r["alive"] else "no"
         tail = r["detail"] or r["epoch"]
-        print(f"{r['name']:13} {r['pid']:>7}  {r['state']:9} {r['restarts']:>8}  {alive:5} {r['pss_mb']:>7}  {tail}")
-    print(f"{'':42} total {sum(float(str(r['pss_mb'])) for r in found):>7.1f}")
-    return 0
+        yield f"{r['name']:13} {r['pid']:>7}  {r['state']:9} {r['restarts']:>8}  {alive:5} {r['pss_mb']:>7}  {tail}"
+    yield f"{'':42} total {sum(float(str(r['pss_mb'])) for r in found):>7.1f}"
 
 
 def restart(args: argparse.Namespace) -> int:
