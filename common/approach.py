@@ -4,9 +4,8 @@ import math
 from collections.abc import Iterator
 
 from common.floor_plan import FloorPlan, Receptacle
-from common.geometry import Pose2, from_segment
+from common.geometry import Point, Pose2, from_segment
 
-Point = tuple[float, float]
 FOOTPRINT = 0.29
 """Radius of the circle around the base [m]: its bumper's rounded corners are 0.284 from its centre."""
 HALF_WIDTH = 0.24

@@ -6,15 +6,13 @@ from typing import TypeVar
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.approach import BIN_RIM, EDGE_DISTANCE, FOOTPRINT, LATERAL, ROOM
 from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan, Vec2
-from common.geometry import SIDES, Array, Rectangle
+from common.geometry import SIDES, Array, Mask, Rectangle
 
-Mask = NDArray[np.bool_]
 P = TypeVar("P", bound=FloorPlan)
 CELL = 0.05
 """Side [m] of the cells: a navigation's."""

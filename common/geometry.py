@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Point = tuple[float, float]
 Pose2 = tuple[float, float, float]
 IDENTITY_POSE: Pose2 = (0.0, 0.0, 0.0)
 """Where a frame lies in itself [m, m, rad]."""

@@ -17,10 +17,9 @@ from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan, Place, Receptacle
 from common.free_sides import CELL, reached
 from common.furniture_tops import seats
-from common.geometry import Array, Pose2, Rectangle
+from common.geometry import Array, Mask, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
 
-Mask = NDArray[np.bool_]
 NOMINAL = CameraMount(x=-0.12, z=1.30, pitch=0.62, fovy=math.radians(62))
 """Camera of a robot whose description names none: the built-in robot's."""
 ASPECT = 4 / 3

@@ -12,11 +12,11 @@ import numpy as np
 
 from common.floor_plan import Receptacle
 from common.furniture_tops import seats
-from common.geometry import Array
+from common.geometry import Array, Mask
 from common.household import Household
 from common.messages import Sighting
 from common.naming.names import normalise
-from common.viewpoints import Mask, Viewpoints
+from common.viewpoints import Viewpoints
 
 HALF_LIFE = 30 * 86400.0
 """Time [s] after which a visit counts half; chosen: habits of a household change over weeks."""

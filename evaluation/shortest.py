@@ -7,13 +7,12 @@ from itertools import pairwise, permutations
 from scipy.sparse import csgraph
 
 from common.approach import poses_for
-from common.geometry import Pose2
+from common.geometry import Point, Pose2
 from common.grid_graph import graph_of, nearest_free
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
 from services.navigation.planning.costmap import Costmap
 
-Point = tuple[float, float]
 MAX_ORDERED = 5
 """Objects whose every order is tried for the shortest way: 120 orders."""
 REACH = 2

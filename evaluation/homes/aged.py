@@ -6,9 +6,9 @@ import msgspec
 import numpy as np
 
 from common.floor_plan import Box, Vec2
-from common.geometry import Rectangle
+from common.geometry import Mask, Rectangle
 from common.scene import Obstacle, Scene
-from evaluation.homes.floor import CELL, PASSAGE, Floor, Mask
+from evaluation.homes.floor import CELL, PASSAGE, Floor
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 

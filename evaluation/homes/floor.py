@@ -9,9 +9,8 @@ from scipy import ndimage
 
 from common.approach import EDGE_DISTANCE, ROOM
 from common.floor_plan import FloorPlan, Room, Vec2, Wall
-from common.geometry import Rectangle
+from common.geometry import Mask, Rectangle
 
-Mask = NDArray[np.bool_]
 CELL = 0.05
 """Side of a cell [m], that of navigation's grid."""
 PASSAGE = ROOM + 0.05

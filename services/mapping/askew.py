@@ -9,9 +9,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array
+from common.geometry import Array, Mask
 
-Mask = NDArray[np.bool_]
 STEP, NORMAL = math.radians(1.0), math.radians(12)
 """Step of the directions that are tried, and turn of a point's own direction against its line's [rad]."""
 BIN, BAND, TAIL = 0.01, 0.035, 0.07

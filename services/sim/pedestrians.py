@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import FOOTPRINT
-from common.geometry import Rectangle
+from common.geometry import Point, Rectangle
 from common.scene import Obstacle
 
-Point = tuple[float, float]
 RELAXATION = 0.5
 """Time [s] in which somebody takes up the wanted velocity (tau)."""
 REPULSION, REACH = 7.0, 0.3

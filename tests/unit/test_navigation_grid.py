@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from common.floor_plan import Box, Place, Receptacle, Wall
+from common.geometry import Point
 from common.household import Household, load_household
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import SPACING, PathPlanner, Point
+from services.navigation.planning.planner import SPACING, PathPlanner
 
 CELL = 0.125
 ORIGIN = -0.3  # of either axis: the flat begins at 0, the map 0.3 m before

@@ -10,7 +10,7 @@ from common import topics
 from common.approach import delivers_at_home, poses_for
 from common.config import config_dir, load
 from common.floor_plan import FloorPlan, Wall
-from common.geometry import Rectangle, quat_yaw
+from common.geometry import Point, Rectangle, quat_yaw
 from common.household import told
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
@@ -18,7 +18,7 @@ from services.navigation.goals import UNLISTED, Goals
 from services.navigation.motion.path_follower import PathFollower
 from services.navigation.places import Places, PlacesFile
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner, Point
+from services.navigation.planning.planner import PathPlanner
 from services.navigation.service import NavigationService
 from services.sim.layout import place_objects
 from tests.node import Node

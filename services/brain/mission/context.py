@@ -8,13 +8,13 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Array, Pose2
+from common.geometry import Array, Mask, Pose2
 from common.language.meaning import is_question
 from common.naming.names import normalise
 from common.naming.place_named import FLOOR, place_named, take_place
 from common.plan_rules import known_world
 from common.topic import Topic
-from common.viewpoints import Mask, Viewpoints, viewpoints_of
+from common.viewpoints import Viewpoints, viewpoints_of
 from common.whereabouts import likelihood, points_at
 from services.brain.config import BrainConfig
 from services.brain.home.keeper import HouseholdKeeper

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Sequence
 
-from common.approach import ROOM, Point, clearance, delivers_at_home, poses_for
+from common.approach import ROOM, clearance, delivers_at_home, poses_for
 from common.floor_plan import FloorPlan
 from common.furniture_tops import support_at
-from common.geometry import Pose2, wrap
+from common.geometry import Point, Pose2, wrap
 
 DIRECTIONS = 24
 """Directions around the object that are tried."""

@@ -12,12 +12,11 @@ from scipy.sparse import csgraph
 from common.approach import ROOM
 from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
-from common.geometry import Array, Pose2
+from common.geometry import Array, Mask, Point, Pose2
 from common.grid_graph import graph_of, nearest_free
-from common.viewpoints import LEAST_GAIN, LOOK_COST, NEAR, Mask, Viewpoints
+from common.viewpoints import LEAST_GAIN, LOOK_COST, NEAR, Viewpoints
 from common.viewpoints import REACH as FAR
 
-Point = tuple[float, float]
 RESOLUTION = 0.05
 """Side of a cell [m]: that of navigation's costmap, so that both agree on which doors are wide enough."""
 REACH = 1

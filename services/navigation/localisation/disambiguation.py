@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from common.floor_plan import FloorPlan, Place
-from common.geometry import Pose2, compose, inverse, transformed
-from services.navigation.localisation.distance_field import Array, DistanceField
+from common.geometry import Array, Pose2, compose, inverse, transformed
+from services.navigation.localisation.distance_field import DistanceField
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 

@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET, FloorPlan, Receptacle
-from common.geometry import Rectangle
+from common.geometry import Array, Rectangle
 
-Array = NDArray[np.float64]
 RESOLUTION = 0.025
 """Distance between nodes [m]; chosen: half the thickness of a table's leg."""
 REACH = 0.6

@@ -8,8 +8,8 @@ import copy
 import math
 
 from common.bus.port import Io, Job
-from common.geometry import Pose2
-from services.navigation.localisation.distance_field import Array, DistanceField
+from common.geometry import Array, Pose2
+from services.navigation.localisation.distance_field import DistanceField
 from services.navigation.localisation.hypotheses import Hypothesis, distinct, hypotheses, plausibility, same
 from services.navigation.localisation.localise import Localiser
 

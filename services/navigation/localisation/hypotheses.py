@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import Pose2, wrap
-from services.navigation.localisation.distance_field import Array, DistanceField
+from common.geometry import Array, Pose2, wrap
+from services.navigation.localisation.distance_field import DistanceField
 from services.navigation.localisation.localise import INLIER, Localiser
 
 STEP, TURNS = 0.25, 48

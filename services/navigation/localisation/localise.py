@@ -9,8 +9,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Pose2, compose, inverse, wrap
-from services.navigation.localisation.distance_field import Array, DistanceField
+from common.geometry import Array, Pose2, compose, inverse, wrap
+from services.navigation.localisation.distance_field import DistanceField
 
 SHARE, WALK = 0.03, 0.01
 """Error of odometry: a share of the motion [-] and a random walk [m or rad per sqrt(m)]; chosen: on the safe side."""

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from common import messages as m
-from common.geometry import Pose2, transformed
+from common.geometry import Array, Pose2, transformed
 from common.robot.lidar import rays_of
-from services.navigation.localisation.distance_field import Array
 
 
 @dataclass(frozen=True)

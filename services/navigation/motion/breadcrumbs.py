@@ -3,9 +3,8 @@
 import math
 from collections import deque
 
-from common.geometry import Pose2
+from common.geometry import Point, Pose2
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import Point
 
 SPACING = 0.05
 """Distance between two points [m]; chosen: the costmap's resolution."""

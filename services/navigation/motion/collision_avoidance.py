@@ -5,11 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from common.geometry import Array
+from common.geometry import Array, Point
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.planning.costmap import Costmap
 
-Point = tuple[float, float]
 HORIZON, SAMPLE = 2.4, 0.2
 """How far ahead gaps are predicted, and the step of it [s]; chosen: a person walks through a door in that time."""
 SPEED, START_LAG = 0.42, 0.25

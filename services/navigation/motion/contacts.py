@@ -4,9 +4,8 @@ import math
 from collections import deque
 from itertools import pairwise
 
-from common.geometry import Pose2, wrap
+from common.geometry import Point, Pose2, wrap
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import Point
 
 PUSHING = 1.2
 """Time [s] for which the base is sent on and does not move; chosen: several times what it takes to set out."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from common import messages as m
-from common.geometry import Array, Pose2
+from common.geometry import Array, Point, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.motion.collision_avoidance import avoid
@@ -18,7 +18,7 @@ from services.navigation.motion.route import DETOUR_PAUSE, STRAYED_PERIOD, Route
 from services.navigation.motion.targets import Targets
 from services.navigation.motion.waiting import Waiting
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner, Point
+from services.navigation.planning.planner import PathPlanner
 
 
 class Navigator:

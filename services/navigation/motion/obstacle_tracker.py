@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.navigation.localisation.distance_field import Array
+from common.geometry import Array, Point
 
-Point = tuple[float, float]
 GAP = 0.25
 """Distance between neighbouring points that separates clusters [m]; chosen: a person's legs stay one cluster."""
 MATCH = 0.45

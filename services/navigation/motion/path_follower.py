@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import Array, Pose2, wrap
+from common.geometry import Array, Point, Pose2, wrap
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import SPACING, Point
+from services.navigation.planning.planner import SPACING
 
 TURN_AT = 0.9
 """Path left from which on the base turns to the goal's heading [m]; chosen: so that it faces there on arrival."""

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Sequence
 
+from common.geometry import Point
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.planning.planner import Point
 
 PERSON = "PERSON_IN_WAY"
 """What navigation does, and why it fails, where people are all that keeps it from getting on."""

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from common.geometry import Array, Pose2
+from common.geometry import Array, Point, Pose2
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import PathFollower, braked
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner, Point
+from services.navigation.planning.planner import PathPlanner
 
 ROOM, APART, ASIDE = 0.9, 2.5, 1.0
 """Clearance, distance from the person, and distance from the line on which the person comes [m] beyond which more is no

@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from common.geometry import Pose2
+from common.geometry import Point, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import PathFollower
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner, Point
+from services.navigation.planning.planner import PathPlanner
 
 REPLAN_PERIOD = 1.0
 """Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from common.geometry import Array
+from common.geometry import Array, Point
 
-Point = tuple[float, float]
 SPEED, LAG = 0.42, 0.3
 """Speed of a base on its way [m/s] and delay until it moves [s]; chosen: what it keeps between bends."""
 SPEEDS = (0.15, 0.3, 0.5)

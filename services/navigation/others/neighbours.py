@@ -8,7 +8,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Array, Pose2
+from common.geometry import Array, Point, Pose2
 from common.mission_log.states import under_way
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.navigator import Navigator
@@ -16,7 +16,7 @@ from services.navigation.others.motion import NEAR, Other, Way, closes_in
 from services.navigation.others.right_of_way import AHEAD, RightOfWay, goes_first
 from services.navigation.planning.changes import fingerprint
 from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner, Point
+from services.navigation.planning.planner import PathPlanner
 
 PERIOD = 0.2
 """Time between two messages [s]: the rate of the topic."""

@@ -17,7 +17,6 @@ from common.floor_plan import FloorPlan
 
 Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Rows and columns."""
-Mask = NDArray[np.bool_]
 SAVE_PERIOD = 30.0
 """Least time between two writes [s]; chosen: what changes in that time is seen again."""
 

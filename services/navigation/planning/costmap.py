@@ -10,8 +10,7 @@ from common import messages as m
 from common.cells import unpacked
 from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
-from common.geometry import Array
-from services.navigation.planning.changes import Mask as Grid
+from common.geometry import Array, Mask
 from services.navigation.planning.obstacle_layer import Discs, ObstacleLayer
 
 _EXPLAINED = 0.12
@@ -49,7 +48,7 @@ class Costmap(Cells):
     # --- the static map
     def _fix(self, distance: Array) -> None:
         self.static_distance = distance
-        self.static: Grid = distance <= 0
+        self.static: Mask = distance <= 0
         self.obstacles.explain(distance <= _EXPLAINED)
 
     def replace(self, grid: m.MapGrid) -> None:
@@ -80,9 +79,9 @@ class Costmap(Cells):
         self._fix(distance)
         self.obstacles.forget()
 
-    def explains(self, points: Array, limit: float) -> Grid:
+    def explains(self, points: Array, limit: float) -> Mask:
         """Which points (n, 2) lie within `limit` [m] of the static map."""
-        found: Grid = self.static_distance[self.cells(points[:, 0], points[:, 1])] <= limit
+        found: Mask = self.static_distance[self.cells(points[:, 0], points[:, 1])] <= limit
         return found
 
     # --- all that stands there
@@ -112,7 +111,7 @@ class Costmap(Cells):
         """The same as if nobody stood anywhere; by `now` [s] also without who may not have been seen to walk yet."""
         return self._distances(self.obstacles.settled(now))
 
-    def _distances(self, seen: Grid) -> Array:
+    def _distances(self, seen: Mask) -> Array:
         """To the nearest of the static map, the circles placed and the cells `seen` [m], by a disc around each cell."""
         discs = [disc for of in self._discs.values() for disc in of]
         if not discs and not seen.any():
@@ -141,11 +140,11 @@ class Costmap(Cells):
         xs, ys = a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
         return float((self.distance if distance is None else distance)[self.cells(xs, ys)].min())
 
-    def seen_within(self, points: Array, radius: float) -> Grid:
+    def seen_within(self, points: Array, radius: float) -> Mask:
         """Which points (n, 2) have something within `radius` that the static map does not put there."""
         cells = self.cells(points[:, 0], points[:, 1])
         near = self.distance[cells]
-        found: Grid = (near < radius) & (near < self.static_distance[cells])
+        found: Mask = (near < radius) & (near < self.static_distance[cells])
         return found
 
     def picture(self, now: float) -> m.Costmap:

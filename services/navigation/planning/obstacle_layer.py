@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_grid import Cells
-from common.geometry import Array, Pose2
+from common.geometry import Array, Mask, Pose2
 from services.navigation.planning.changes import Changes
-from services.navigation.planning.changes import Mask as Grid
 from services.navigation.planning.seen_cells import STANDS, STIRS, SeenCells
 
 Disc = tuple[float, float, float]
@@ -31,22 +30,22 @@ class ObstacleLayer:
         self._cells, self.memory = cells, memory
         self._seen = SeenCells(cells.shape, memory)
         self.changes = Changes(cells.shape, lasting_after)
-        self.explained: Grid = np.zeros(cells.shape, bool)
+        self.explained: Mask = np.zeros(cells.shape, bool)
         self.version = 0
         self.doubted = -math.inf
 
     # --- what is there
     @property
-    def known(self) -> Grid:
+    def known(self) -> Mask:
         """Where something is (rows, columns)."""
         return self._seen.known
 
     @property
-    def things(self) -> Grid:
+    def things(self) -> Mask:
         """Where something is that was no person when it was seen last (rows, columns)."""
         return self._seen.things
 
-    def settled(self, now: float) -> Grid:
+    def settled(self, now: float) -> Mask:
         """Where something is that has stood there for so long that it is a thing (rows, columns)."""
         return self._seen.settled(now)
 
@@ -55,19 +54,19 @@ class ObstacleLayer:
         """Nothing is there that the static map does not have."""
         return self._seen.empty
 
-    def lasting_at(self, points: Array) -> Grid:
+    def lasting_at(self, points: Array) -> Mask:
         """Which points (n, 2) are where something stands that became a part of the map; to a cell."""
         return self._at(self.changes.lasting, points)
 
-    def stood_at(self, points: Array, now: float) -> Grid:
+    def stood_at(self, points: Array, now: float) -> Mask:
         """Which points (n, 2) are where something stands that was no person when it came; to a cell."""
         return self._at(self._seen.stood(now), points)
 
-    def _at(self, grid: Grid, points: Array) -> Grid:
+    def _at(self, grid: Mask, points: Array) -> Mask:
         if not grid.any():
             return np.zeros(len(points), bool)
         rows, columns = self._cells.cells(points[:, 0], points[:, 1])
-        found: Grid = ndimage.binary_dilation(grid, np.ones((3, 3)))[rows, columns]
+        found: Mask = ndimage.binary_dilation(grid, np.ones((3, 3)))[rows, columns]
         return found
 
     def seen_in(self, disc: Disc) -> bool:
@@ -150,7 +149,7 @@ class ObstacleLayer:
             self._seen.drop(cells)
             self.version += 1
 
-    def explain(self, explained: Grid) -> None:
+    def explain(self, explained: Mask) -> None:
         """Another static map explains what is seen there (rows, columns)."""
         self.explained = explained
         self._seen.drop(explained)
@@ -170,7 +169,7 @@ class ObstacleLayer:
             self.version += 1
 
 
-def in_discs(xs: Array, ys: Array, discs: Discs) -> Grid:
+def in_discs(xs: Array, ys: Array, discs: Discs) -> Mask:
     """Which points (n,) lie in one of the circles."""
     found = np.zeros(len(xs), bool)
     for x, y, radius in discs:

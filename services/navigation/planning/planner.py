@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
-from common.geometry import Array
+from common.geometry import Array, Point
 from common.grid_graph import graph_of, nearest_free
 from services.navigation.planning.costmap import Costmap
 
-Point = tuple[float, float]
 SPACING = 0.05
 """Distance between the points of a path [m]: the costmap's resolution."""
 _WEIGHT = 4.0

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array
-from services.navigation.planning.changes import Cells, Mask
+from common.geometry import Array, Mask
+from services.navigation.planning.changes import Cells
 
 _NEW = 3.0
 """Time [s] since the first sight of a cell within which who is around it is what is in it; chosen: longer than it takes
