@@ -1,20 +1,19 @@
 """Leaves that ask the person something. An answer counts from the first word of the question on."""
 
 from collections.abc import Callable
-from typing import Any
 
 from py_trees.common import Status
 
 from common import messages as m
 from common import topics
 from common.language import offers
-from common.topic import Topic
 from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply, answered, corrected, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
-from services.brain.steps.leaf import Say, SendGoal
+from services.brain.steps.hear_speech import HearSpeech
+from services.brain.steps.leaf import Say
 
 
 class AskQuestion(Say):
@@ -52,7 +51,7 @@ class AskQuestion(Say):
         return super().update()
 
 
-class HearAnswer(SendGoal):
+class HearAnswer(HearSpeech):
     """Listens for the answer, unless it came while the question was being said."""
 
     def __init__(self, node_id: str, ctx: Context) -> None:
@@ -62,9 +61,7 @@ class HearAnswer(SendGoal):
         given = self.ctx.voice.take_reply()
         if given is None:
             return super().update()
-        if self.channel.outstanding:
-            self.channel.abandon()
-            self.ctx.send_only(self.channel, topics.SPEECH_GOAL, "cancel")
+        self.need_not_listen()
         return self.succeed(Result("ok", message=given))
 
     def succeed(self, result: Result) -> Status:
@@ -80,12 +77,9 @@ class HearAnswer(SendGoal):
         """What becomes of an answer, by its kind and what it says besides."""
         raise NotImplementedError
 
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
-
     def fail_with(self, failure: Failure) -> Status:
         """Speech has failed: the same pause before it listens again as in the fetch pipeline."""
-        self.ctx.voice.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        self.pause()
         return super().fail_with(failure)
 
     def refuse(self, code: str, detail: str, spoken: str) -> Status:

@@ -1,17 +1,16 @@
 """Leaves before a mission: until the robot is ready, somebody says something, or has been heard."""
 
 from collections.abc import Callable
-from typing import Any
 
 from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
-from services.brain.steps.leaf import Leaf, SendGoal
+from services.brain.steps.hear_speech import HearSpeech
+from services.brain.steps.leaf import Leaf
 
 
 class Ready(Leaf):
@@ -50,7 +49,7 @@ class Wait(Leaf):
         return Status.SUCCESS if ctx.mission.active or self._ends() else Status.RUNNING
 
 
-class Listen(SendGoal):
+class Listen(HearSpeech):
     """Hears a command; silence and `ERROR` cost the pause before the next listening, not a mission."""
 
     def __init__(self, node_id: str, ctx: Context) -> None:
@@ -59,16 +58,12 @@ class Listen(SendGoal):
 
     def update(self) -> Status:
         ctx = self.ctx
-        if not ctx.mission.active and take_command(ctx) and self.channel.outstanding:
-            self.channel.abandon()
-            ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, "cancel")
+        if not ctx.mission.active and take_command(ctx):
+            self.need_not_listen()
         return Status.SUCCESS if ctx.mission.active else super().update()
 
     def step(self) -> str:
         return "listen"
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
 
     def succeed(self, result: Result) -> Status:
         ctx, heard = self.ctx, result.message
@@ -77,7 +72,7 @@ class Listen(SendGoal):
         return Status.SUCCESS
 
     def fail_with(self, failure: Failure) -> Status:
-        self.ctx.voice.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        self.pause()
         self.ctx.io.log.info("nothing heard", code=failure.code, detail=failure.detail)
         return Status.FAILURE
 

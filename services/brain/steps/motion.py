@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2
 from common.topic import Topic
-from services.brain.mission.channel import Result
+from services.brain.mission.channel import Channel, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.remarks import PERSON
@@ -32,7 +32,25 @@ def drive_to(goal_id: str, pose: Pose2, about: m.ObjectRef | None = None) -> tup
     return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=about)
 
 
-class Navigate(SendGoal):
+class Move(SendGoal):
+    """A goal in words, `text`, to a peer that moves the robot: without an answer in time the peer is told to stop."""
+
+    WORDS: Topic[Any]
+
+    def __init__(self, node_id: str, ctx: Context, channel: Channel, text: Text, **more: Any) -> None:
+        super().__init__(node_id, ctx, channel, **more)
+        self._text = text
+
+    def step(self) -> str:
+        return self._text()
+
+    def fail_with(self, failure: Failure) -> Status:
+        if failure.code == "TIMEOUT":
+            self.ctx.send_only(self.channel, self.WORDS, "stop")
+        return super().fail_with(failure)
+
+
+class Navigate(Move):
     """A navigation goal in words, or as the pose of `place` with `drive_by = "poses"`.
 
     A way that is blocked is tried again on another path `navigation_retries` times in all: what navigation reports as
@@ -40,27 +58,19 @@ class Navigate(SendGoal):
     way it is tried again for `people_patience`: they walk on.
     """
 
+    WORDS = topics.NAVIGATION_GOAL
+
     def __init__(
         self, node_id: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName, place: str = ""
     ) -> None:
-        config = ctx.config
-        super().__init__(
-            node_id,
-            ctx,
-            ctx.peers.navigation,
-            state=state,
-            timeout=config.navigation_timeout,
-            retries=config.navigation_retries,
-        )
-        self._text, self._spoken, self._place = text, spoken, place
+        limit, retries = ctx.config.navigation_timeout, ctx.config.navigation_retries
+        super().__init__(node_id, ctx, ctx.peers.navigation, text, state=state, timeout=limit, retries=retries)
+        self._spoken, self._place = spoken, place
         self._recovered = 0
 
     def initialise(self) -> None:
         super().initialise()
         self._recovered = 0
-
-    def step(self) -> str:
-        return self._text()
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
@@ -84,14 +94,11 @@ class Navigate(SendGoal):
             self._recovered += max(0, told.recoveries)
         return self._tries + self._recovered < self._retries
 
-    def fail_with(self, failure: Failure) -> Status:
-        if failure.code == "TIMEOUT":
-            self.ctx.send_only(self.ctx.peers.navigation, topics.NAVIGATION_GOAL, "stop")
-        return super().fail_with(failure)
 
-
-class Manipulate(SendGoal):
+class Manipulate(Move):
     """A manipulation goal in words; `about` gives the object it concerns."""
+
+    WORDS = topics.MANIPULATION_GOAL
 
     def __init__(
         self,
@@ -103,10 +110,9 @@ class Manipulate(SendGoal):
         state: m.BrainStateName,
         retries: int = 0,
     ) -> None:
-        super().__init__(
-            node_id, ctx, ctx.peers.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
-        )
-        self._text, self._about = text, about
+        limit = ctx.config.manipulation_timeout
+        super().__init__(node_id, ctx, ctx.peers.manipulation, text, state=state, timeout=limit, retries=retries)
+        self._about = about
 
     def initialise(self) -> None:
         super().initialise()
@@ -119,17 +125,9 @@ class Manipulate(SendGoal):
             for known in (ctx.known_object(pose.label),)
         }
 
-    def step(self) -> str:
-        return self._text()
-
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         message = m.ManipulationGoal(goal=self._text(), id=goal_id, object=self._about())
         return topics.MANIPULATION_GOAL, message
-
-    def fail_with(self, failure: Failure) -> Status:
-        if failure.code == "TIMEOUT":
-            self.ctx.send_only(self.ctx.peers.manipulation, topics.MANIPULATION_GOAL, "stop")
-        return super().fail_with(failure)
 
 
 class Grab(Manipulate):
