@@ -28,8 +28,9 @@ MOSTLY = 0.5
 """Least share of the kinds that lie as long as it is in what it may be."""
 VOXEL = 0.005
 """Side [m] of the cells in which points are averaged. Chosen: a third of a finger pad."""
-MOST_POINTS = 200
-"""Points of an object that are told to others."""
+MOST_POINTS = 600
+"""Points of an object that are told to others: one for each cell of the visible side of something of 25 by 6 cm. With a
+third of them a stem, a drip pan and the gap of a handle all looked alike to the hand."""
 
 
 def describe(view: View, segment: Segment, found: Measurement) -> Detection:

@@ -8,10 +8,10 @@ import pytest
 
 from common.geometry import quat_matrix, yaw_quat
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, antipodal
+from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLOPING, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp
-from services.manipulation.grasps.pads import LONGEST, PLAY, STEEPEST
+from services.manipulation.grasps.pads import LONGEST, PLAY, STEEPEST, contact_at
 from services.manipulation.grasps.surface import SPACING, surface
 from services.manipulation.grasps.target import Target
 
@@ -135,6 +135,18 @@ def test_a_wedge_is_not_pinched_where_it_would_slip_out() -> None:
     for grasp in grasps(wedge):
         across = abs(float(grasp.pose.rotation[:, 1] @ [0.0, 1.0, 0.0]))
         assert across < math.cos(math.atan(STEEPEST) / 2) or grasp.width < 0.03
+
+
+def test_straight_walls_are_rather_held_than_a_cone_nearer_to_the_middle() -> None:
+    """Exam of worlds, trainer: pads slid up sides that had been measured 6 degrees less steep than they were."""
+    heights = np.linspace(-0.1, 0.1, 60)
+    radii = np.clip(0.026 - 0.38 * (heights - 0.015), 0.0, 0.034)
+    turns = np.linspace(math.pi / 2, 3 * math.pi / 2, 24)
+    cone = np.array([(r * math.cos(t), r * math.sin(t), h) for h, r in zip(heights, radii, strict=True) for t in turns])
+    of = target("round", (0.068, 0.068, 0.2), cone[cone[:, 2] < 0.06])
+    best = grasps(of)[0]
+    contact = contact_at(surface(of), best.pose)
+    assert contact is not None and contact.slope < SLOPING
 
 
 def test_what_was_seen_is_completed_down_to_what_it_rests_on_and_no_wider() -> None:

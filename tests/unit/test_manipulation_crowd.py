@@ -1,6 +1,7 @@
 """Grasps in a crowd: neighbours are the solids that they are, and what is in the way has a name."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,9 +12,10 @@ from common import messages as m
 from common.geometry import yaw_quat
 from common.household import load_household
 from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning.plan_grab import GrabPlan, from_place, plan_grab, same_hold
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, target_of
 from services.sim.model import own
 
@@ -140,6 +142,23 @@ def test_fingertips_that_close_do_not_press_on_the_table() -> None:
         plan = plan_grab(PLANNER, rod, [[TABLE]], ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
         for width in (ARM.hand.open, plan.grasp.width):
             assert PLANNER.clearance.met(plan.grasp.pose, width, [TABLE]) == set()
+
+
+def test_what_failed_is_not_tried_again_under_the_name_it_has_once_the_thing_was_measured_anew() -> None:
+    rng, along = np.random.default_rng(0), np.array([0.001, -0.002, 0.0])
+    top = rng.uniform((-0.09, -0.012, 0.014), (0.09, 0.012, 0.015), (300, 3))
+    rod = Target("rod", "", (0.55, 0.0, 0.615), 0.0, (0.18, 0.024, 0.03), shape="irregular", points=top, measured=True)
+    moved = replace(rod, position=(0.58, 0.02, 0.615), points=top + along)
+
+    def first(target: Target, skip: Sequence[Grasp]) -> tuple[Grasp, Grasp]:
+        plan = plan_grab(PLANNER, target, [[TABLE]], ARM.home.copy(), 0.1, 0.1, 1.0, skip, [])
+        grasp = next(g for g in plan.options if g.name == plan.grasp.name)
+        return grasp, from_place(grasp, np.array(target.position))
+
+    failed = first(rod, [])[1]
+    again, other = first(moved, [])[1], first(moved, [failed])[1]
+    assert failed.on_surface and again.name != failed.name and same_hold(again, failed), "it is called otherwise"
+    assert not same_hold(other, failed)
 
 
 def test_the_arm_goes_home_around_the_table_from_within_what_is_believed_to_stand_there() -> None:

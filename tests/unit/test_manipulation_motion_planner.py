@@ -193,8 +193,8 @@ def test_what_is_carried_stays_behind_the_edges_that_the_base_drives_up_to(
     held = GraspedObject("thing", "", turn, offset, size, 0.02, 0.0)
     path = PLANNER.to_carry(held, PLANNER.carries[-1], ())
     assert path is not None
-    hand, (half, middle) = PLANNER.arm.pose(whole(path)[-1]), held.box()
-    front = float((hand.position + hand.rotation @ middle)[0] + np.abs(hand.rotation[0]) @ (half + SHRINK))
+    hand, (half, middle, turned) = PLANNER.arm.pose(whole(path)[-1]), held.box()
+    front = float((hand.position + hand.rotation @ middle)[0] + np.abs((hand.rotation @ turned)[0]) @ (half + SHRINK))
     assert front < EDGE_DISTANCE
 
 

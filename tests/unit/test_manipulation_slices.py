@@ -48,6 +48,15 @@ def test_it_is_held_by_its_body_from_the_front() -> None:
     assert around and min(abs(g.width - 0.066) for g in around) < 0.01
 
 
+def test_a_drip_pan_on_a_stem_stays_as_thin_as_it_is() -> None:
+    """Exam of worlds, candlestick: its pan was a drum of 20 mm, which pads slid off."""
+    stem = [front((0.0075, 0.0075), -TALL / 2 + shift, TALL / 2) for shift in (0.0, 0.005)]
+    pan = [front((0.025, 0.025), height, height + 0.001) for height in (0.002, 0.006)]
+    found = surface(irregular(np.concatenate([*stem, *pan]))) - np.array(AT)
+    wide = {float(z) for z in np.unique(found[:, 2]) if np.ptp(found[found[:, 2] == z, 1]) > 0.03}
+    assert wide and max(wide) - min(wide) < 0.012
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_dozen_points_a_slice_tell_how_wide_it_is(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -11,6 +11,7 @@ import pytest
 
 from common.bus.memory import MemoryBus, MemoryIo
 from common.config import ConfigError
+from common.geometry import yaw_matrix
 from common.household import told
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import ArmModel
@@ -193,6 +194,10 @@ def test_what_is_held_is_at_the_pinch_point() -> None:
         held = arm.data.geom("held")
         assert held.xpos == pytest.approx(pinch.position + pinch.rotation @ [0.01, 0.02, 0.03], abs=1e-5)
         assert held.xmat.reshape(3, 3) == pytest.approx(pinch.rotation, abs=1e-4)
+    arm.hold(np.array([0.02, 0.03, 0.05]), np.zeros(3), yaw_matrix(0.8))
+    pinch = arm.pose(arm.home)
+    turned = arm.data.geom("held").xmat.reshape(3, 3)
+    assert turned == pytest.approx(pinch.rotation @ yaw_matrix(0.8), abs=1e-4), "along its own axes"
 
 
 def test_physics_does_not_know_the_skin(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:

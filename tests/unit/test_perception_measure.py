@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from common.geometry import Array
 from common.kinds import LOOKS
 from common.naming.looks import likely
 from services.perception.shapes.measure import Measurement, measure
-from services.perception.unlisted import measures_of, thinned
+from services.perception.unlisted import MOST_POINTS, measures_of, thinned
 
 CAMERA = np.array([-1.0, -0.4, 1.3])
 FLOOR, NOISE = 0.72, 0.0025
@@ -186,8 +187,14 @@ def test_a_hidden_end_does_not_make_a_can_narrow() -> None:
     assert math.dist((m.x, m.y), (0.2, 0.0)) < 0.03
 
 
+def test_what_is_long_is_told_of_without_gaps_that_a_finger_goes_through() -> None:
+    side = np.random.default_rng(0).uniform((0.0, 0.0, 0.0), (0.25, 0.06, 0.001), (5000, 3))
+    apart, _ = cKDTree(thinned(side)).query(side)
+    assert np.quantile(apart, 0.99) < 0.006
+
+
 def test_points_are_few_and_on_the_surface() -> None:
     points = thinned(cylinder(0.2, 0.1, 0.04, 0.12))
-    assert 50 < len(points) <= 200
+    assert 50 < len(points) <= MOST_POINTS
     rho = np.hypot(points[:, 0] - 0.2, points[:, 1] - 0.1)
     assert np.median(np.abs(rho[points[:, 2] < FLOOR + 0.11] - 0.04)) < 0.003

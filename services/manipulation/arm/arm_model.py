@@ -66,12 +66,8 @@ class Pose:
 HELD = 0.4
 """Half extents [m] the held box is compiled with, around the pinch point. Chosen: bounds of the broad phase that no
 carried object exceeds; a bottle taken at its neck reaches 0.25 m below it, and what is beyond collides with nothing."""
-
-
 STAND_IN = "stand_in"
 """The geom that takes an object's shape when the hand's distance to it is asked for; it collides with nothing."""
-
-
 OWN_GAP = 0.005
 """Distance [m] that the arm keeps from the robot in straight motions: it lags by up to .03 rad, 5 mm at the elbow."""
 WIDEST_GAP = 0.02
@@ -141,6 +137,7 @@ class ArmModel:
         self.span = float(np.linalg.norm(np.diff(chain, axis=0), axis=1).sum())
         self._held = self.model.geom("held").id
         self._held_at = self.model.geom_pos[self._held].copy()
+        self.model.geom_sameframe[self._held] = 0  # its rotation is not that of its body for good
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, self.model.geom_quat[self._held])
         self._held_turn = turn.reshape(3, 3)
@@ -170,13 +167,15 @@ class ArmModel:
             else:
                 self.data.mocap_pos[mocap] = (FAR, FAR, i)
 
-    def hold(self, half: Array | None, offset: Array | None = None) -> None:
-        """Carry a box of these half extents, centred `offset` from the pinch point in its frame; None: nothing."""
+    def hold(self, half: Array | None, offset: Array | None = None, turned: Array | None = None) -> None:
+        """Carry a box of these half extents, `offset` and `turned` (3, 3) in the pinch point's frame; None: nothing."""
         flags = (0, 0) if half is None else (2, 1)
         self.model.geom_contype[self._held], self.model.geom_conaffinity[self._held] = flags
         if half is not None and offset is not None:
             self._resize(self._held, half)
             self.model.geom_pos[self._held] = self._held_at + self._held_turn @ offset
+            turn = self._held_turn if turned is None else self._held_turn @ turned
+            mujoco.mju_mat2Quat(self.model.geom_quat[self._held], turn.reshape(-1))
 
     def _resize(self, geom: int, half: Array) -> None:
         self.model.geom_size[geom] = half

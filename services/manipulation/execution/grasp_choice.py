@@ -1,11 +1,14 @@
 """The choice of a grasp, after which the object can be put down as it is to stand: from here or from another stance."""
 
+from collections.abc import Collection
+
 import numpy as np
 
 from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
+from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others
@@ -17,10 +20,10 @@ def chosen(
     found: WorldObject,
     target: Target,
     around: list[list[Obstacle]],
-    tried: frozenset[str],
+    tried: Collection[Grasp],
     touched: list[Array],
 ) -> Steps[GrabPlan]:
-    """The plan of a grasp that is not among the names `tried`; `target`, `around`, `touched`: as in `plan_grab`.
+    """The plan of a grasp that is not among those `tried`; `target`, `around`, `touched`: as in `plan_grab`.
 
     What lies is taken so that it can be stood up. Where that cannot be from here the base is sent elsewhere, once;
     after that, or where no stance is better, it is taken so that it can be laid down.

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from common import messages as m
 from common import topics
 from common.messages import WorldObject
@@ -22,9 +24,9 @@ from services.manipulation.execution.recovery import go_home, retreat
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
-from services.manipulation.grasps.grasp import shown
+from services.manipulation.grasps.grasp import Grasp, shown
 from services.manipulation.grasps.grasp_verification import settled
-from services.manipulation.planning.plan_grab import GrabPlan
+from services.manipulation.planning.plan_grab import GrabPlan, from_place
 from services.manipulation.planning.planning_scene import target_of
 from services.manipulation.planning.straight_grab import with_reserve
 
@@ -42,7 +44,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     """Reach, grasp, retract; another candidate after a miss. Returns the evidence."""
     config = robot.config
     since = robot.now - config.fresh
-    tried: set[str] = set()
+    tried: list[Grasp] = []
     widths: list[float] = []
     last = Failure("UNREACHABLE", "no grasp tried")
     weighed = False
@@ -54,12 +56,15 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
-            plan = yield from chosen(robot, found, target, around, frozenset(tried), touched_from(robot, found.label))
+            plan = yield from chosen(robot, found, target, around, tried, touched_from(robot, found.label))
         except Failure as failure:
             raise (last if tried else failure) from None
-        candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
+        candidates = shown(
+            target, plan.options, robot.base, robot.now, (g.name for g in tried), plan.grasp.name, goal.id
+        )
         robot.io.publish(topics.GRASPS, candidates)
-        tried.add(plan.grasp.name)
+        wanted_hold = next((g for g in plan.options if g.name == plan.grasp.name), plan.grasp)
+        tried.append(from_place(wanted_hold, np.array(target.position)))
         opening = round(1000 * plan.opening) if plan.opening else None
         robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name, opening_mm=opening)
         try:
@@ -67,7 +72,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         except Failure as failure:
             if failure.code == MISTAKEN:
                 robot.io.log.info("aim mistaken", detail=failure.detail, grasp=plan.grasp.name)
-                tried.discard(plan.grasp.name)
+                tried.pop()
                 since, last = robot.now - config.fresh, failure
                 continue
             if failure.code not in ("EMPTY_GRASP", "SLIPPED", BLOCKED, BAD_HOLD, TOUCHED, TOO_HEAVY):

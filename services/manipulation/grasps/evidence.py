@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, cKDTree
 
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.grasps.antipodal import LEAST_SHARE
+from services.manipulation.grasps.antipodal import LEAST_SHARE, SLOPING
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import CERTAIN, Grasp
 from services.manipulation.grasps.pads import contact_at
@@ -37,8 +37,6 @@ of what the hand comes to from its seen side only the front may be seen."""
 LEAST_SEEN, SPANNED = 4, 0.3
 """Fewest seen points between the pads, or of a part of its own, and the least share of the width that they span: of
 something round that is taken from its far side half is seen."""
-SLOPING = 0.25
-"""Steepest surface, as a tangent, under the pads of a grasp by rule: fingers slid up a cone of 17 degrees."""
 
 
 def explained(target: Target) -> bool:

@@ -82,12 +82,12 @@ class GraspedObject:
         """
         return self.width + PLAY if self.entangled else None
 
-    def box(self) -> tuple[Array, Array]:
-        """Half extents (3,) and centre (3,) [m] of the object's collision box in the frame of the pinch point."""
-        turned = self.rotation.T @ yaw_matrix(self.yaw)
-        half = np.abs(turned) @ (np.array(self.size) / 2) - SHRINK
+    def box(self) -> tuple[Array, Array, Array]:
+        """Half extents (3,) [m] of the object's collision box along its own axes, its centre (3,) and rotation (3, 3)
+        in the frame of the pinch point."""
         center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
-        return np.maximum(half, LEAST_HALF), center
+        half = np.maximum(np.array(self.size) / 2 - SHRINK, LEAST_HALF)
+        return half, center, self.rotation.T @ yaw_matrix(self.yaw)
 
 
 def lying_rotation(axis: float) -> Array:

@@ -15,8 +15,8 @@ from services.manipulation.grasps.target import Target
 SPACING = 0.004
 """Distance [m] between neighbouring points of a completed surface: a fifth of a pad's width."""
 GAP = 0.009
-"""Half the widest gap [m] between points that were seen which is taken for surface as well: some 200 points on the
-visible half of an object of 10 cm lie 7 mm apart."""
+"""Half the widest gap [m] between points that were seen which is taken for surface as well: points are 5 to 7 mm apart,
+and pixels at edges are missing."""
 BAND = 0.010
 """Height [m] of the bands in which the radius of a round object is measured: each holds a dozen points."""
 WALL = 0.004

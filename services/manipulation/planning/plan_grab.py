@@ -1,7 +1,7 @@
 """Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.arm.contacts import new_sides_first
 from services.manipulation.arm.trajectory import Leg, connect
+from services.manipulation.grasps.antipodal import alike
 from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
@@ -47,7 +48,7 @@ def plan_grab(
     approach: float,
     lift: float,
     reach: float,
-    skip: frozenset[str],
+    skip: Collection[Grasp],
     touched: list[Array],
     stand_on: float | None = None,
 ) -> GrabPlan:
@@ -56,13 +57,14 @@ def plan_grab(
     `around`: what is not to be touched, with the widest margins first. With each of them every grasp is tried with the
     fingers wide open, then those that met something with them partly closed.
 
-    `skip` names grasps that are not tried; `touched` are rotations (3, 3) of the hand in the base frame with which the
-    open fingers touched the object: grasps from other sides come first. `stand_on`: as in `Way`.
+    `skip`: grasps that are not tried, relative to the object's place; `touched` are rotations (3, 3) of the hand in the
+    base frame with which the open fingers touched the object: grasps from other sides come first. `stand_on`: as in
+    `Way`.
 
     Raises:
         PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
     """
-    target = planner.believed(target)
+    place, target = np.array(target.position), planner.believed(target)
     distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
     if distance > reach:
         raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
@@ -81,7 +83,7 @@ def plan_grab(
     ways = [Way(solids, shaped, approach, lift, stand_on) for solids in around for shaped in (False, True)]
     for stage in planner.candidates(target):
         options += stage
-        left = [g for g in stage if g.name not in skip]
+        left = [g for g in stage if not any(same_hold(from_place(g, place), other) for other in skip)]
         left = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
         tried += left
         if plan := attempt(left, ways[0]):
@@ -102,6 +104,18 @@ def plan_grab(
     raise PlanError(
         "UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}{behind}", names
     )
+
+
+def from_place(grasp: Grasp, place: Array) -> Grasp:
+    """A grasp relative to where its object is (3,) [m]: it is the same one when that has been moved."""
+    return replace(grasp, pose=grasp.pose.moved(-place))
+
+
+def same_hold(one: Grasp, other: Grasp) -> bool:
+    """Two grasps take hold of an object in the same way: by the same rule, or at about the same place of its surface,
+    which is called otherwise once it was measured anew.
+    """
+    return one.name == other.name or (one.on_surface and other.on_surface and alike(one.pose, other.pose))
 
 
 def _in_mm(target: Target) -> str:
