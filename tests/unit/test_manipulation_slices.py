@@ -58,9 +58,9 @@ def test_a_drip_pan_on_a_stem_stays_as_thin_as_it_is() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_dozen_points_a_slice_tell_how_wide_it_is(seed: int) -> None:
+def test_the_points_that_are_told_of_a_slice_tell_how_wide_it_is(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    turns, heights = rng.uniform(math.pi / 2, 3 * math.pi / 2, 200), rng.uniform(-TALL / 2, TALL / 2, 200)
+    turns, heights = rng.uniform(math.pi / 2, 3 * math.pi / 2, 600), rng.uniform(-TALL / 2, TALL / 2, 600)
     seen = np.column_stack([0.033 * np.cos(turns), 0.033 * np.sin(turns), heights])
     found = surface(irregular(seen + rng.normal(0.0, 0.001, seen.shape))) - np.array(AT)
     for level in np.unique(found[:, 2])[2:-2]:

@@ -15,11 +15,8 @@ from scipy.spatial import cKDTree
 from services.manipulation.arm.arm_model import Array
 
 BAND, LEVELS = 0.010, 3
-"""Height [m] of a slice, two rows of the points that are told, and at how many heights of it points lie."""
-ROUND_ABOUT, SPARSE = 0.010, 0.003
-"""Height [m] above and below a slice's middle up to which points tell its outline where it has fewer than one for so
-much [m] of its breadth: a dozen on a bottle, of which one is 3 mm off and the outermost are missing, tell it so badly
-that no pads fit. Where there are more a drip pan, a knob or a rim has to stay as thin as it is."""
+"""Height [m] of a slice, two rows of the points that are told, and at how many heights of it points lie. Chosen: half a
+pad's width; with more a drip pan is a drum, which pads slide off."""
 FEWEST = 4
 """Points from which a slice tells its outline; one with fewer is as the nearest that does."""
 APART = 0.018
@@ -42,7 +39,7 @@ def slices(seen: Array, away: Array, height: float, spacing: float) -> Array:
     local = np.stack([seen[:, :2] @ across, seen[:, :2] @ away, seen[:, 2]], axis=1)
     count = max(1, math.ceil(height / BAND))
     middles = -height / 2 + (np.arange(count) + 0.5) * height / count
-    outlines = [_ovals(_of_slice(local, float(z), height / count / 2 + 1e-9)) for z in middles]
+    outlines = [_ovals(local[np.abs(local[:, 2] - z) <= height / count / 2 + 1e-9]) for z in middles]
     told = [n for n, ovals in enumerate(outlines) if ovals]
     found = []
     for n, z in enumerate(middles):
@@ -54,14 +51,6 @@ def slices(seen: Array, away: Array, height: float, spacing: float) -> Array:
         return np.empty((0, 3))
     body = np.concatenate(found)
     return np.column_stack([np.outer(body[:, 0], across) + np.outer(body[:, 1], away), body[:, 2]])
-
-
-def _of_slice(local: Array, middle: float, half: float) -> Array:
-    """Which of points (n, 3) tell the outline of a slice."""
-    apart = np.abs(local[:, 2] - middle)
-    own = local[apart <= half]
-    dense = len(own) >= FEWEST and float(np.ptp(own[:, 0])) <= SPARSE * len(own)
-    return own if dense else local[apart <= max(half, ROUND_ABOUT)]
 
 
 def _ovals(points: Array) -> list[tuple[float, float, float, float]]:
