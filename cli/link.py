@@ -84,6 +84,19 @@ class Link:
             raise CliError(f"{who} did not answer within {seconds:.0f} s; see `tidybot ps`")
         return answer
 
+    def picture(self, camera: m.CameraName, width: int, height: int, seconds: float) -> m.Rgbd:
+        """A fresh picture of a camera in that size [pixels].
+
+        Raises:
+            CliError: it has not come within `seconds`.
+        """
+        watch, wanted = Watch(self, topics.PICTURES[camera]), fresh_id()
+        self.send(topics.CAMERA_REQUEST, m.CameraRequest(id=wanted, camera=camera, width=width, height=height))
+        seen = watch.until(lambda one: one.id == wanted, seconds)
+        if seen is None:
+            raise CliError(f"no picture of the {camera} camera within {seconds:.0f} s; see `tidybot logs camera`")
+        return seen
+
     def query(self, key: str, request: dict[str, object] | None = None) -> Any:
         """The JSON answer of a queryable.
 

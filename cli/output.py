@@ -1,13 +1,38 @@
 """What commands print: for programs with `--json`, else for people."""
 
 import argparse
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, TextIO
 
 import msgspec
+
+from common.time.clock import monotonic
+
+OFTEN, SELDOM = 0.2, 10.0
+"""Time [s] between two states of a line of progress on a terminal, and between two lines elsewhere."""
 
 
 def show(args: argparse.Namespace, value: Any, lines: Iterable[str]) -> None:
     """Print `value` as one line of JSON where `--json` was given, else the `lines` that tell people of it."""
     for line in [msgspec.json.encode(value).decode()] if args.json else lines:
         print(line)
+
+
+class ProgressLine:
+    """One line that renews itself on a terminal, a line now and then elsewhere."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream, self._terminal, self._due = stream, stream.isatty(), 0.0
+
+    def show(self, text: Callable[[], str], last: bool = False) -> None:
+        """Show the text, when it is due; the `last` one stays."""
+        if monotonic() < self._due and not last:
+            return
+        self._due = monotonic() + (OFTEN if self._terminal else SELDOM)
+        begin, end = ("\r\033[K", "") if self._terminal else ("", "\n")
+        print(f"{begin}{text()}", end="\n" if last else end, file=self._stream, flush=True)
+
+    def clear(self) -> None:
+        """Make room for other text."""
+        if self._terminal:
+            self._stream.write("\r\033[K")

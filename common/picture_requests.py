@@ -8,8 +8,6 @@ from common.bus.port import Io
 from common.gateway import due
 from common.topic import Topic
 
-PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
-
 
 class PictureRequests:
     """Asks for pictures of `width` x `height` at `rate` [Hz]; 0: for none."""
@@ -20,11 +18,10 @@ class PictureRequests:
 
     def step(self, now: float, watched: set[Topic[Any]]) -> None:
         """Ask each camera whose topic is watched, when it is due."""
-        for name, topic in PICTURES.items():
+        for name, topic in topics.PICTURES.items():
             if topic not in watched or not due(self.rate, now - self._asked.get(name, float("-inf"))):
                 continue
             self._asked[name] = now
-            camera: Any = name
             own = self._io.new_id(self._io.name)
-            request = m.CameraRequest(id=own, camera=camera, width=self._width, height=self._height)
+            request = m.CameraRequest(id=own, camera=name, width=self._width, height=self._height)
             self._io.publish(topics.CAMERA_REQUEST, request)

@@ -136,6 +136,8 @@ HEAD_RGBD = stream(
 WRIST_RGBD = stream(
     "camera/wrist/rgbd", m.Rgbd, by="camera", to="perception manipulation dashboard", rate=10.0, bulk=True
 )
+PICTURES: dict[m.CameraName, Topic[m.Rgbd]] = {"head": HEAD_RGBD, "wrist": WRIST_RGBD}
+"""What each camera shows."""
 
 PAGE_STATUS = event("page/status", m.PageStatus, by="dashboard")
 

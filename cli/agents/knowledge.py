@@ -1,8 +1,7 @@
 """What an agent may know of the robot: pictures, objects, the map, its state. Each function asks the bus once."""
 
 import os
-import uuid
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,6 @@ from common.rendering.encode import jpeg, png
 from common.robot.pictures import colours
 from common.scene import SceneError
 
-Camera = Literal["head", "wrist"]
 PICTURE_SIZE = (640, 480)
 """Width and height [pixels] of a picture."""
 PICTURE_LIMIT = 10.0
@@ -31,22 +29,13 @@ JPEG_QUALITY = 85
 """Of pictures for agents [1 to 95]; chosen: print on a label can still be read."""
 
 
-def picture(link: Link, camera: Camera) -> bytes:
+def picture(link: Link, camera: m.CameraName) -> bytes:
     """A fresh picture of one camera as JPEG.
 
     Raises:
         CliError: the camera does not answer.
     """
-    topic = topics.HEAD_RGBD if camera == "head" else topics.WRIST_RGBD
-    watch = Watch(link, topic)
-    request = m.CameraRequest(
-        id=f"agent-{uuid.uuid4().hex[:8]}", camera=camera, width=PICTURE_SIZE[0], height=PICTURE_SIZE[1]
-    )
-    link.send(topics.CAMERA_REQUEST, request)
-    seen = watch.until(lambda picture: picture.id == request.id, PICTURE_LIMIT)
-    if seen is None:
-        raise CliError(f"the {camera} camera does not answer; see `tidybot ps`")
-    return jpeg(colours(seen), JPEG_QUALITY)
+    return jpeg(colours(link.picture(camera, *PICTURE_SIZE, PICTURE_LIMIT)), JPEG_QUALITY)
 
 
 def objects(link: Link) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@ from cli.agents import knowledge
 from cli.agents.missions import Mission, Missions, phrase, sentence
 from cli.errors import CliError
 from cli.robot import brake
+from common import messages as m
 from common.bus.session import BusError
 
 INSTRUCTIONS = """A household robot with one arm. Give it one command at a time and wait for the outcome.
@@ -154,7 +155,7 @@ def _add_questions(server: MCPServer[Any], missions: Missions) -> None:
             return await missions.ask(lambda link: knowledge.whereabouts(link, words))
 
     @server.tool(annotations=READS)
-    async def what_do_you_see(camera: knowledge.Camera = "head") -> Image:
+    async def what_do_you_see(camera: m.CameraName = "head") -> Image:
         """A picture of what the robot's head or wrist camera sees now."""
         async with _clear():
             return Image(data=await missions.ask(lambda link: knowledge.picture(link, camera)), format="jpeg")
@@ -194,7 +195,7 @@ def _add_resources(server: MCPServer[Any], missions: Missions) -> None:
             return await missions.ask(knowledge.missions)
 
     @server.resource("tidybot://camera/{camera}", mime_type="image/jpeg")
-    async def camera(camera: knowledge.Camera) -> bytes:
+    async def camera(camera: m.CameraName) -> bytes:
         """What the head or wrist camera sees now."""
         async with _clear(ResourceError):
             return await missions.ask(lambda link: knowledge.picture(link, camera))

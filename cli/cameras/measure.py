@@ -1,6 +1,5 @@
 """Measuring the cameras' mounts on a robot that is up: the arm's way from pose to pose, and the pictures there."""
 
-import itertools
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from cli.cameras.shot import Mount, Shot
 from cli.cameras.surfaces import Arm, Room
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
-from cli.link import Link, Watch
+from cli.link import Link
 from common import messages as m
 from common import topics
 from common.files.atomic_file import replace
@@ -35,24 +34,15 @@ class Photographer:
 
     def __init__(self, driver: Driver, arm: Arm) -> None:
         self._driver, self._arm = driver, arm
-        self._numbers = itertools.count(1)
-        self._pictures = {"head": Watch(driver.link, topics.HEAD_RGBD)}
-        self._pictures["wrist"] = Watch(driver.link, topics.WRIST_RGBD)
 
-    def shot(self, camera: str) -> Shot:
+    def shot(self, camera: m.CameraName) -> Shot:
         """A picture from where the arm is at rest.
 
         Raises:
             CliError: none comes.
         """
-        driver = self._driver
-        identity = f"calibrate-{next(self._numbers)}"
-        request = m.CameraRequest(id=identity, camera=camera, width=WIDTH, height=HEIGHT)  # type: ignore[arg-type]
-        driver.link.send(topics.CAMERA_REQUEST, request)
-        image = self._pictures[camera].until(lambda picture: picture.id == identity, PATIENCE)
-        if image is None:
-            raise CliError(f"no picture of the {camera} camera within {PATIENCE:.0f} s; see `tidybot logs camera`")
-        return Shot(image, self.angles(), driver.joints()["gripper"])
+        image = self._driver.link.picture(camera, WIDTH, HEIGHT, PATIENCE)
+        return Shot(image, self.angles(), self._driver.joints()["gripper"])
 
     def angles(self) -> Array:
         joints = self._driver.joints()
@@ -132,7 +122,7 @@ def _measure(photographer: Photographer, driver: Driver, arm: Arm, count: int) -
     driver.wait(0.5)
     if float(np.abs(photographer.angles() - arm.home).max()) > AT_HOME:
         raise CliError("the arm is not in its carry pose; restart the robot, or let it finish what it does")
-    first = {camera: photographer.shot(camera).image for camera in calibration.CAMERAS}
+    first = {camera: photographer.shot(camera).image for camera in topics.PICTURES}
     print(f"choosing {count} poses of the arm", flush=True)
     shots = []
     for number, _ in enumerate(photographer.visit(poses(arm, first["head"], count)), 1):

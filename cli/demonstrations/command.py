@@ -3,18 +3,16 @@
 import argparse
 import queue
 import sys
-import uuid
-from collections.abc import Sequence
 from typing import Any
 
 from cli.demonstrations.dataset import Dataset
 from cli.demonstrations.sampler import Episode, Sampler
 from cli.errors import CliError
-from cli.link import Link
+from cli.link import Link, fresh_id
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from common.demonstration import PICTURE_SIZE
+from common.demonstration import PICTURE_SIZE, PictureTurns
 from common.process.host import StopSignal
 from common.time.clock import monotonic
 from common.topic import Topic
@@ -27,29 +25,6 @@ FOLLOWED: tuple[Topic[Any], ...] = (
 )  # fmt: skip
 
 
-class Pictures:
-    """Asks for pictures while a mission is under way, one at a time: the robot's own requests are served in between."""
-
-    def __init__(self, link: Link, cameras: Sequence[str]) -> None:
-        self._link, self._cameras = link, list(cameras)
-        self._wanted, self._asked = "", 0.0
-
-    def came(self, picture: m.Rgbd) -> None:
-        """A picture is there; if it is the one asked for, the next camera has its turn."""
-        if picture.id == self._wanted:
-            self._wanted = ""
-            self._cameras.append(self._cameras.pop(0))
-
-    def ask(self) -> None:
-        """Ask for one, unless one is under way."""
-        if self._wanted and monotonic() - self._asked < RENEW:
-            return
-        self._wanted, self._asked = f"demonstration-{uuid.uuid4().hex[:8]}", monotonic()
-        width, height = PICTURE_SIZE
-        request = m.CameraRequest(id=self._wanted, camera=self._cameras[0], width=width, height=height)  # type: ignore[arg-type]
-        self._link.send(topics.CAMERA_REQUEST, request)
-
-
 def demonstrate(args: argparse.Namespace, link: Link, stop: StopSignal) -> int:
     """Record until Ctrl-C or `--duration`; an episode whose mission has not ended by then is left out.
 
@@ -59,13 +34,13 @@ def demonstrate(args: argparse.Namespace, link: Link, stop: StopSignal) -> int:
     dataset = Dataset(args.lerobot, args.fps, dict.fromkeys(args.cameras, PICTURE_SIZE))
     inbox: queue.SimpleQueue[tuple[Topic[Any], bytes]] = queue.SimpleQueue()
     kept = [delivery.subscribe(link.session, topic, _into(inbox, topic)) for topic in FOLLOWED]
-    sampler, pictures = Sampler(args.fps, args.cameras), Pictures(link, args.cameras)
+    sampler, pictures = Sampler(args.fps, args.cameras), PictureTurns(args.cameras, RENEW)
     _say(f"demonstrations from {link.connect} into {args.lerobot}; Ctrl-C ends it")
     end = monotonic() + args.duration if args.duration else float("inf")
     while not stop.is_set() and monotonic() < end:
         _drain(inbox, sampler, pictures, stop)
-        if sampler.recording:
-            pictures.ask()
+        if sampler.recording and (request := pictures.request(monotonic(), fresh_id)) is not None:
+            link.send(topics.CAMERA_REQUEST, request)
         for episode in sampler.ended():
             _keep(dataset, episode, args.all)
     for subscriber in kept:
@@ -79,7 +54,7 @@ def _into(inbox: "queue.SimpleQueue[tuple[Topic[Any], bytes]]", topic: Topic[Any
 
 
 def _drain(
-    inbox: "queue.SimpleQueue[tuple[Topic[Any], bytes]]", sampler: Sampler, pictures: Pictures, stop: StopSignal
+    inbox: "queue.SimpleQueue[tuple[Topic[Any], bytes]]", sampler: Sampler, pictures: PictureTurns, stop: StopSignal
 ) -> None:
     """Take what has come; wait a moment when nothing has."""
     if inbox.empty():

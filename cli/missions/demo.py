@@ -12,6 +12,7 @@ from cli.link import Link, Watch
 from cli.missions.audio import Player, recorded
 from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.missions.verdict import Verdict, Witness
+from cli.output import ProgressLine
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import free_port, port_is_free
 from cli.processes.programs import said_by
@@ -32,24 +33,20 @@ SPOKEN = "red mug"
 OUT = (workspace() or Path.cwd()) / "out"
 PICTURE = 60.0
 """Time [s] for the picture at the end; chosen: far above what drawing takes."""
-PROGRESS = 10.0
-"""Time [s] between two lines of progress where the output is no terminal."""
 
 
 class Screen:
     """States on lines of their own, and below them one line of progress."""
 
     def __init__(self) -> None:
-        self._tty = sys.stdout.isatty()
+        self._line = ProgressLine(sys.stdout)
         self._shown = ""
         self._began = monotonic()
-        self._due = 0.0
         self._ended = 0.0
         self.robot = self._first = 0.0
 
     def say(self, text: str) -> None:
-        if self._tty:
-            sys.stdout.write("\r\033[K")
+        self._line.clear()
         print(text, flush=True)
 
     def state(self, state: m.BrainState) -> None:
@@ -71,14 +68,7 @@ class Screen:
 
     def progress(self, robot: float) -> None:
         self.robot = max(self.robot, robot)
-        if monotonic() < self._due:
-            return
-        self._due = monotonic() + (0.2 if self._tty else PROGRESS)
-        if self._tty:
-            sys.stdout.write(f"\r\033[K  ... {self.times()}")
-            sys.stdout.flush()
-        else:
-            print(f"  ... {self.times()}", flush=True)
+        self._line.show(lambda: f"  ... {self.times()}")
 
 
 class Demo:

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from cli.errors import CliError, number
 from cli.link import Link, address, robot_command
+from cli.output import ProgressLine
 from cli.processes.supervision import Supervision, run_dir
-from cli.recordings.tape import BATCH, FLUSH, Listener, Progress, Tape
-from common import config
+from cli.recordings.tape import BATCH, FLUSH, Listener, Tape, progress
+from common import config, topics
 from common.bus.session import NoRouter, open_session
 from common.config import config_dir
 from common.files.plan_file import to_toml
@@ -63,7 +64,6 @@ class RecordingFiles:
         return Recorder(path)
 
 
-CAMERAS = ("head", "wrist")
 FASTEST = 50
 """Most frames a second of a dataset: half the rate of joint states."""
 
@@ -139,7 +139,7 @@ def _run(args: argparse.Namespace, files: RecordingFiles, link: Link, stop: Stop
     recorder = files.recorder
     listener = Listener(link.session)
     tape = Tape(recorder, listener, os.environ.get("TIDYBOT_CLOCK") == "wall")
-    progress = Progress(recorder, tape)
+    line = ProgressLine(sys.stderr)
     print(f"recording {link.connect} into {recorder.path}; Ctrl-C ends it", file=sys.stderr, flush=True)
     end = monotonic() + args.duration if args.duration else float("inf")
     flushed = monotonic()
@@ -153,15 +153,14 @@ def _run(args: argparse.Namespace, files: RecordingFiles, link: Link, stop: Stop
             if files.full:
                 recorder = files.turn_over(lambda done: _facts(done, link, tape))
                 tape.go_on(recorder)
-                progress = Progress(recorder, tape)
-            progress.show(listener.inbox.qsize())
+            line.show(lambda: progress(files.recorder, tape, listener.inbox.qsize()))
         listener.close()
         while tape.write():
             pass
         _facts(recorder, link, tape)
     except OSError as error:
         raise CliError(f"{recorder.path}: {error.strerror}; what was written until then is kept") from None
-    progress.show(0, last=True)
+    line.show(lambda: progress(recorder, tape, 0), last=True)
     return 0
 
 
@@ -205,8 +204,8 @@ def _close(recorder: Recorder) -> None:
 
 def _cameras(text: str) -> tuple[str, ...]:
     found = tuple(dict.fromkeys(text.split(",")))
-    if not set(found) <= set(CAMERAS):
-        raise argparse.ArgumentTypeError(f"{text!r}: expected {' or '.join(CAMERAS)}, or both with a comma")
+    if not set(found) <= set(topics.PICTURES):
+        raise argparse.ArgumentTypeError(f"{text!r}: expected {' or '.join(topics.PICTURES)}, or both with a comma")
     return found
 
 
@@ -228,5 +227,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     learning.add_argument(
         "--fps", type=number(1, FASTEST), default=10, metavar="N", help="frames a second, 1 to 50 (%(default)s)"
     )
-    learning.add_argument("--cameras", type=_cameras, default=CAMERAS, metavar="A,B", help="head, wrist or both (both)")
+    learning.add_argument(
+        "--cameras", type=_cameras, default=tuple(topics.PICTURES), metavar="A,B", help="head, wrist or both (both)"
+    )
     learning.add_argument("--all", action="store_true", help="also missions that failed or were cancelled")

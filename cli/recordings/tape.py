@@ -2,14 +2,13 @@
 
 import contextlib
 import queue
-import sys
 from typing import Any
 
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.recording import Recorder
-from common.time.clock import monotonic, unix_time
+from common.time.clock import unix_time
 from common.time.lockstep import DT
 
 FLUSH, BATCH = 1.0, 2000
@@ -111,26 +110,8 @@ class Tape:
             self._recorder.presence(name, alive, self.now, unix_time())
 
 
-class Progress:
-    """One line that renews itself on a terminal, a line every ten seconds elsewhere."""
-
-    def __init__(self, recorder: Recorder, tape: Tape) -> None:
-        self._recorder, self._tape = recorder, tape
-        self._tty = sys.stderr.isatty()
-        self._due = 0.0
-
-    def show(self, waiting: int, last: bool = False) -> None:
-        if monotonic() < self._due and not last:
-            return
-        self._due = monotonic() + (0.2 if self._tty else 10.0)
-        r = self._recorder
-        text = (
-            f"{self._tape.now:8.1f} s  {sum(r.counts.values())} messages on {len(r.counts)} keys  {r.size / 1e6:.1f} MB"
-        )
-        text += f"  {waiting} waiting" if waiting > BATCH else ""
-        print(
-            f"\r\033[K{text}" if self._tty else text,
-            end="\n" if last or not self._tty else "",
-            file=sys.stderr,
-            flush=True,
-        )
+def progress(recorder: Recorder, tape: Tape, waiting: int) -> str:
+    """How a recording stands, in a line."""
+    counts = recorder.counts
+    text = f"{tape.now:8.1f} s  {sum(counts.values())} messages on {len(counts)} keys  {recorder.size / 1e6:.1f} MB"
+    return text + (f"  {waiting} waiting" if waiting > BATCH else "")

@@ -123,9 +123,12 @@ class ObjectPose(Message):
     picture: bytes = b""
 
 
+CameraName = Literal["head", "wrist"]
+
+
 class CameraRequest(Message):
     id: str
-    camera: Literal["head", "wrist"]
+    camera: CameraName
     width: int = 320
     height: int = 240
 

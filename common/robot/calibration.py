@@ -4,10 +4,11 @@ import math
 import tomllib
 from pathlib import Path
 
+from common.topics import PICTURES
+
 Vector = tuple[float, float, float]
 Mounts = dict[str, tuple[Vector, Vector]]
 """Offset [m] and turn [deg, a rotation vector] of each camera from its drawing, in its optical frame."""
-CAMERAS = ("head", "wrist")
 LARGEST_OFFSET, LARGEST_TURN = 0.05, 10.0
 """What a mount may be off its drawing [m, deg] before the file is taken for nonsense; chosen: ten bad brackets."""
 
@@ -28,8 +29,8 @@ def read(path: Path) -> Mounts:
         raise CalibrationError(f"{path}: {error.strerror}; `tidybot calibrate --out {path}` makes one") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path}: {error}") from None
-    if strange := sorted(set(tables) - set(CAMERAS)):
-        raise CalibrationError(f"{path}: no camera is called {strange[0]!r}; there are {' and '.join(CAMERAS)}")
+    if strange := sorted(set(tables) - set(PICTURES)):
+        raise CalibrationError(f"{path}: no camera is called {strange[0]!r}; there are {' and '.join(PICTURES)}")
     return {
         name: (_vector(path, name, table, "offset", LARGEST_OFFSET), _vector(path, name, table, "turn", LARGEST_TURN))
         for name, table in tables.items()

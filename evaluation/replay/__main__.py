@@ -7,10 +7,10 @@ import argparse
 import os
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 from cli.errors import CliError
+from cli.output import ProgressLine
 from common import config, topics
 from common.household import load_household
 from common.recording import Recording, RecordingError
@@ -88,14 +88,13 @@ def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], slack: flo
 
 def judged(player: Player) -> int:
     """Run the player and print a verdict for each topic; 0 when all are the same, else 1."""
-    began = monotonic()
+    began, line = monotonic(), ProgressLine(sys.stderr)
     try:
-        outputs = player.run(_progress())
+        outputs = player.run(lambda t: line.show(lambda: f"  {t:.1f} s") if sys.stderr.isatty() else None)
     finally:
         player.close()
     slack = 0.0 if player.exact else LOCKSTEP_SLACK if player.lockstep else SLACK
-    if sys.stderr.isatty():
-        print("\r\033[K", end="", file=sys.stderr)
+    line.clear()
     found = verdicts(player, outputs, slack)
     if player.recording.torn:
         print(f"the recording is torn ({player.recording.torn})")
@@ -108,17 +107,6 @@ def judged(player: Player) -> int:
     if not found:
         raise CliError(f"neither the recording nor the replay has anything from {player.kind.NAME}")
     return 0 if all(v.same for v in found) else 1
-
-
-def _progress() -> Callable[[float], None]:
-    due = [0.0]
-
-    def show(t: float) -> None:
-        if sys.stderr.isatty() and monotonic() > due[0]:
-            due[0] = monotonic() + 0.2
-            print(f"\r\033[K  {t:.1f} s", end="", file=sys.stderr, flush=True)
-
-    return show
 
 
 def main(argv: list[str]) -> int:

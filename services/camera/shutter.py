@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
+from common import topics
 from common.geometry import matrix_quat, turn_matrix
 from common.rendering.renderer import Renderer
 from common.robot import calibration
@@ -34,7 +35,7 @@ class Shutter:
     def __init__(self, backend: str, seed: int | None, mounts: calibration.Mounts) -> None:
         self._backend, self._mjcf, self._mounts, self._seed = backend, "", mounts, seed
         self._renderer: Renderer | None = None
-        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(calibration.CAMERAS)}
+        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(topics.PICTURES)}
 
     def take(self, model: m.SimModel, states: Sequence[m.SimState], request: m.CameraRequest) -> m.Rgbd:
         """One picture, stamped with the last of the `states`; the one before says how things move.

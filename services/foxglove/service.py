@@ -12,7 +12,7 @@ from common import topics
 from common.bus.port import Io
 from common.config import settings
 from common.gateway import refusal
-from common.picture_requests import PICTURES, PictureRequests
+from common.picture_requests import PictureRequests
 from common.robot.frames import FramePose, camera_pose, lidar_pose
 from common.robot.moving_frames import MovingFrames
 from common.robot.shapes import Shape, shapes
@@ -89,7 +89,7 @@ class FoxgloveService:
         for topic in wanted - {TICKS}:
             for message in self._io.take_all(topic):
                 self._take(topic, message)
-        self._pictures.step(now, wanted & {*PICTURES.values()})
+        self._pictures.step(now, wanted & {*topics.PICTURES.values()})
         self._describe(now)
         self._move(now)
 

@@ -1,6 +1,7 @@
 """Parameters of manipulation."""
 
 from common.config import Config
+from common.messages import CameraName
 
 
 class ManipulationConfig(Config, frozen=True):
@@ -38,7 +39,7 @@ class ManipulationConfig(Config, frozen=True):
     aim_turn: float = 0.15
     policy: str = ""
     policy_rate: float = 20.0
-    policy_cameras: tuple[str, ...] = ("head", "wrist")
+    policy_cameras: tuple[CameraName, ...] = ("head", "wrist")
     policy_seconds: float = 60.0
     policy_patience: float = 0.2
     policy_late: float = 2.0

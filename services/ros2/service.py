@@ -10,7 +10,7 @@ from common import topics
 from common.bus import codec
 from common.bus.port import Io
 from common.gateway import refusal
-from common.picture_requests import PICTURES, PictureRequests
+from common.picture_requests import PictureRequests
 from common.robot.frames import FramePose, camera_pose, lidar_pose
 from common.robot.moving_frames import MovingFrames
 from common.robot.urdf import pivots, urdf
@@ -105,7 +105,7 @@ class Ros2Service:
                 self._pass_on(topic, message)
         for row, outlet in self._outlets:
             self._greet(row, outlet)
-        self._cameras.step(now, wanted & {*PICTURES.values()})
+        self._cameras.step(now, wanted & {*topics.PICTURES.values()})
         self._send_frames(now)
 
     # --- from ROS

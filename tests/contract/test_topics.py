@@ -9,9 +9,9 @@ import pytest
 
 from cli.processes.services import NAMES
 from common import interfaces, topics
-from common.picture_requests import PICTURES
 from common.time.lockstep import period_of
 from common.topic import ANYONE, EACH, Topic
+from common.topics import PICTURES
 
 SERVICES = tuple(name for name in NAMES if name != "router")
 ROOT = Path(__file__).parents[2]

@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, quat_matrix, yaw_matrix
-from common.picture_requests import PICTURES, PictureRequests
+from common.picture_requests import PictureRequests
 from common.robot.pictures import PictureError, colours, depths
 from services.dashboard.config import DashboardConfig
 from services.dashboard.panels.widgets import Panels
@@ -33,7 +33,7 @@ class Cameras:
     def look(self, now: float, base: Pose2) -> None:
         """Show what came, and ask for more."""
         world = self._io.latest(topics.WORLD_OBJECTS)
-        wanted = {name: topic for name, topic in PICTURES.items() if self._panels.wanted(name)}
+        wanted = {name: topic for name, topic in topics.PICTURES.items() if self._panels.wanted(name)}
         for name, topic in wanted.items():
             # Others ask for pictures, too, and more often than a person needs to see one.
             due = now - self._shown.get(name, float("-inf")) >= 0.9 / self._config.camera_rate

@@ -1,17 +1,17 @@
 """The panels beside the 3-D view, made of viser's own elements."""
 
 from functools import partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import viser
 import viser.uplot as uplot
 from numpy.typing import NDArray
 
+from common.topics import PICTURES
 from services.dashboard.panels.history_buffers import Curves
 
 BLANK = np.full((12, 16, 3), 32, np.uint8)
-CAMERAS: tuple[Literal["head", "wrist"], ...] = ("head", "wrist")
 
 
 class Panels:
@@ -36,7 +36,7 @@ class Panels:
             self._html["tree"] = gui.add_html("")
         with tabs.add_tab("Camera"):
             blank = np.resize(BLANK, (height, width, 3))
-            for name in CAMERAS:
+            for name in PICTURES:
                 self._wanted[name] = gui.add_checkbox(f"{name} camera", initial_value=name == "head")
                 self._images[name] = gui.add_image(
                     blank, jpeg_quality=75, format="jpeg", visible=self._wanted[name].value

@@ -7,7 +7,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.demonstration import PICTURE_SIZE
+from common.demonstration import PictureTurns
 from services.manipulation.arm.arm_model import ArmModel, Array
 from services.manipulation.arm.servo import Servo
 from services.manipulation.arm.touch import TOUCHED
@@ -36,37 +36,31 @@ BLOCKED = 1.0
 """How long a policy may want what it must not [s]; chosen: time to correct itself."""
 SETTLE = 0.3
 """How long the fingers are waited for when it is done [s]; chosen."""
-CAMERAS = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
 
 
 class Eyes:
     """The pictures of a policy: asked for one at a time, so that the robot's own requests are served in between."""
 
     def __init__(self, robot: Robot) -> None:
-        self._robot, self._cameras = robot, list(robot.config.policy_cameras)
-        self._wanted, self._asked = "", float("-inf")
+        self._robot, self._cameras = robot, robot.config.policy_cameras
+        self._turns = PictureTurns(self._cameras, RENEW)
         self.pictures: dict[str, Any] = {}
         self._seen: dict[str, float] = {}
 
     def open(self, wanted: bool = True) -> None:
         """Have pictures delivered, or no longer."""
         for name in self._cameras:
-            self._robot.io.demand(CAMERAS[name], wanted)
+            self._robot.io.demand(topics.PICTURES[name], wanted)
 
     def step(self) -> None:
         """Take what has come and ask for the next one."""
         robot = self._robot
-        for name in tuple(self._cameras):
-            for message in robot.io.take_all(CAMERAS[name]):
+        for name in self._cameras:
+            for message in robot.io.take_all(topics.PICTURES[name]):
                 if (picture := picture_of(message)) is not None:
                     self.pictures[name], self._seen[name] = picture, message.t
-                if message.id == self._wanted:
-                    self._wanted = ""
-                    self._cameras.append(self._cameras.pop(0))
-        if self._cameras and (not self._wanted or robot.now - self._asked > RENEW):
-            self._wanted, self._asked = robot.io.new_id("policy"), robot.now
-            width, height = PICTURE_SIZE
-            request = m.CameraRequest(id=self._wanted, camera=self._cameras[0], width=width, height=height)  # type: ignore[arg-type]
+                self._turns.came(message)
+        if (request := self._turns.request(robot.now, lambda: robot.io.new_id("policy"))) is not None:
             robot.io.publish(topics.CAMERA_REQUEST, request)
 
     @property
