@@ -16,9 +16,6 @@ Vec2 = tuple[float, float]
 Vec3 = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
-LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
-"""How furniture is built [m]: a table's legs and how far inside the top's edge they stand, how far a cabinet's body
-stays behind its top, the thickness of a bin's walls."""
 DRIVEN_OVER, PASSED_UNDER = 0.02, 1.45
 """How high [m] a rug is at most, which the base drives over (its bumper is 27 mm above the floor), and from where on
 furniture hangs above the robot."""

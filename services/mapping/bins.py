@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from common.floor_plan import BIN_WALL
+from common.furniture_parts import BIN_WALL
 from common.geometry import Array, Rectangle
 from services.mapping.grid import RESOLUTION, Cells, Grid
 from services.mapping.surfaces import fit_rectangle

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.files.map_file import FREE
-from common.floor_plan import BIN_WALL, LEG, LEG_INSET, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
+from common.floor_plan import Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
 from common.free_sides import free_sides
 from common.free_sides import reached as reached_cells
+from common.furniture_parts import BIN_WALL, LEG, LEG_INSET
 from common.geometry import Array, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
+from common.furniture_parts import parts
 from common.scene import Receptacle, Scene
 from services.sim import covers, objects
 from services.sim.layout import Placement
@@ -14,8 +14,6 @@ STATIC = 'contype="1" conaffinity="3"'
 _WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 1"
 _COLOURS = {"grey": "0.45 0.46 0.48 1", "green": "0.25 0.50 0.30 1", "yellow": "0.80 0.68 0.25 1"}
 _GLASS = "0.75 0.85 0.88 0.2"
-_TOP = 0.03
-"""Thickness of a table's or a cupboard's top [m]."""
 CCD_TOLERANCE = 1e-8
 """Tolerance of the search for contacts [m]. With MuJoCo's own, 1e-6, one contact in 16,000 of a pad with a cylinder
 that it hardly touches is found on the far side of the pad, 8 mm deep, and what is held is struck with 200 N."""
@@ -51,45 +49,13 @@ def _furniture(scene: Scene) -> str:
     return "".join(parts)
 
 
-def _table(r: Receptacle, name: str, rgba: str) -> list[str]:
-    """A top on four legs."""
-    (sx, sy), z = r.size, r.center[2]
-    parts = [_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), rgba)]
-    for n, (i, j) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):
-        center = (i * (sx / 2 - LEG_INSET), j * (sy / 2 - LEG_INSET), (z - _TOP) / 2)
-        parts.append(_box(f"{name}_leg_{n}", center, (LEG, LEG, z - _TOP), rgba))
-    return parts
-
-
-def _cabinet(r: Receptacle, name: str, rgba: str, top: str) -> list[str]:
-    """A closed body under a top."""
-    (sx, sy), z = r.size, r.center[2]
-    body = _box(f"{name}_body", (0, 0, (z - _TOP) / 2), (sx - 2 * BODY_INSET, sy - 2 * BODY_INSET, z - _TOP), rgba)
-    return [body, _box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), top)]
-
-
-def _bin(r: Receptacle, name: str, rgba: str) -> list[str]:
-    """An open box: a floor and four walls."""
-    (sx, sy), z, wall = r.size, r.center[2], BIN_WALL
-    parts = [_box(name, (0, 0, z / 2), (sx, sy, max(z, 0.01)), rgba)]
-    for n, (i, j) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
-        center = (i * (sx + wall) / 2, j * (sy + wall) / 2, r.depth / 2)
-        size = (wall if i else sx + 2 * wall, wall if j else sy + 2 * wall, r.depth)
-        parts.append(_box(f"{name}_wall_{n}", center, size, rgba))
-    return parts
-
-
 def _receptacle(r: Receptacle) -> str:
     name = r.name.replace(" ", "_")
-    if r.kind == "bin":
-        parts = _bin(r, name, _COLOURS.get(r.colour, _COLOURS["grey"]))
-    elif r.kind == "table":
-        parts = _table(r, name, _WOOD)
-    elif r.kind == "tray":
-        parts = _cabinet(r, name, "0.35 0.36 0.40 1", "0.20 0.55 0.55 1")
-    else:
-        parts = _cabinet(r, name, *((_WHITE, _STEEL) if r.kind == "counter" else (_WOOD, _WOOD)))
-    return f'<body pos="{r.center[0]} {r.center[1]} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
+    own = _COLOURS.get(r.colour, _COLOURS["grey"])
+    looks = {"bin": (own, own), "tray": ("0.35 0.36 0.40 1", "0.20 0.55 0.55 1"), "counter": (_WHITE, _STEEL)}
+    rgba, top = looks.get(r.kind, (_WOOD, _WOOD))
+    boxes = "".join(_box(name + p.name, p.center, p.size, rgba if p.name else top) for p in parts(r))
+    return f'<body pos="{r.center[0]} {r.center[1]} 0" euler="0 0 {r.yaw}">{boxes}</body>'
 
 
 def world_files(scene: Scene, placements: Sequence[Placement]) -> dict[str, bytes]:

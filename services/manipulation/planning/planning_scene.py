@@ -26,7 +26,7 @@ MOST_FURNITURE = 14
 """Boxes of furniture and walls, nearest first; the rest of the `arm_model.BOXES` is for objects."""
 BIN_WALL = 0.03
 """Thickness [m] of a bin's walls in the planning scene. Chosen: twice that of the walls themselves,
-`floor_plan.BIN_WALL`."""
+`furniture_parts.BIN_WALL`."""
 TWICE = 0.03
 """Difference [m] of places and extents up to which two objects are one that is known twice: no two stand so near."""
 LEAST_POINTS = 12

@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET, FloorPlan, Receptacle
+from common.floor_plan import FloorPlan
+from common.furniture_parts import parts
 from common.geometry import Array, Rectangle
 
 RESOLUTION = 0.025
@@ -21,25 +22,9 @@ def rectangles(floor_plan: FloorPlan, height: float) -> list[Rectangle]:
     found += [wall.footprint for wall in floor_plan.walls if not wall.glass]
     found += [box.outline for box in floor_plan.furniture if abs(height - box.center[2]) <= box.size[2] / 2]
     for r in floor_plan.receptacles:
-        found += [Rectangle(*r.outline.to_map(x, y), length, width, r.yaw) for x, y, length, width in _parts(r, height)]
+        cut = [p for p in parts(r) if abs(height - p.center[2]) <= p.size[2] / 2]
+        found += [Rectangle(*r.outline.to_map(*p.center[:2]), *p.size[:2], r.yaw) for p in cut]
     return found
-
-
-def _parts(r: Receptacle, height: float) -> list[tuple[float, float, float, float]]:
-    """x, y and extents of a receptacle's solid parts at `height`, in its own frame."""
-    sx, sy = r.size
-    corners = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-    if r.kind == "bin":
-        if height > r.depth:
-            return []
-        x, y = (sx + BIN_WALL) / 2, (sy + BIN_WALL) / 2
-        along, across = sx + 2 * BIN_WALL, sy + 2 * BIN_WALL
-        return [(x, 0, BIN_WALL, across), (-x, 0, BIN_WALL, across), (0, y, along, BIN_WALL), (0, -y, along, BIN_WALL)]
-    if height > r.center[2]:
-        return []
-    if r.kind == "table":
-        return [(i * (sx / 2 - LEG_INSET), j * (sy / 2 - LEG_INSET), LEG, LEG) for i, j in corners]
-    return [(0.0, 0.0, sx - 2 * BODY_INSET, sy - 2 * BODY_INSET)]
 
 
 class DistanceField:
