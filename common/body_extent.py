@@ -1,9 +1,12 @@
-"""The extent of compiled bodies: corners of a mesh, and how low what collides reaches."""
+"""The extent of compiled bodies: corners of a mesh, bounds of a geom, and how low what collides reaches."""
 
 import math
 from typing import Any
 
 import mujoco
+import numpy as np
+
+from common.geometry import Array
 
 _TYPE = mujoco.mjtGeom
 
@@ -12,6 +15,19 @@ def corners(model: Any, mesh: int) -> Any:
     """Corners (n, 3) [m] of a compiled mesh, in its own frame."""
     begin = int(model.mesh_vertadr[mesh])
     return model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])]
+
+
+def bounds(model: Any, geom: int, turn: Array, place: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) [m] of a geom with its origin at `place` (3,), turned by the matrix `turn` (3, 3).
+
+    A mesh's own box lies along its principal axes, which may be askew: its turned corners would be far too wide.
+    """
+    if model.geom_type[geom] == _TYPE.mjGEOM_MESH:
+        points = place + corners(model, int(model.geom_dataid[geom])) @ turn.T
+        return points.min(axis=0), points.max(axis=0)
+    box = model.geom_aabb[geom]
+    middle, half = place + turn @ box[:3], np.abs(turn) @ box[3:]
+    return middle - half, middle + half
 
 
 def lowest(model: Any, data: Any, body: int) -> float:

@@ -4,11 +4,6 @@ from judge.claims import Claim, false_claims
 from judge.evidence import Evidence
 
 
-def delivered(evidence: Evidence) -> bool:
-    """Something was wanted, and every wanted thing is where it belongs."""
-    return bool(evidence.things) and all(t.delivered for t in evidence.things)
-
-
 def untouched(evidence: Evidence) -> bool:
     """The robot hit nothing, and nothing moved that nobody wanted moved."""
     return not evidence.hits and not evidence.disturbed

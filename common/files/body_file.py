@@ -44,21 +44,12 @@ def bounds(model: Any, data: Any, turn: Array) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) [m] of all that is no plane, after the rotation `turn` (3, 3)."""
     import mujoco
 
-    from common.body_extent import corners
+    from common import body_extent
 
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for g in range(model.ngeom):
-        if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE:
-            continue
-        own, at = turn @ data.geom_xmat[g].reshape(3, 3), turn @ data.geom_xpos[g]
-        if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_MESH:
-            points = corners(model, int(model.geom_dataid[g])) @ own.T + at
-        else:
-            centre, half = model.geom_aabb[g, :3], model.geom_aabb[g, 3:]
-            signs = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, -1).T
-            points = (centre + signs * half) @ own.T + at
-        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-    return low, high
+    solid = [g for g in range(model.ngeom) if model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
+    turned = [(g, turn @ data.geom_xmat[g].reshape(3, 3), turn @ data.geom_xpos[g]) for g in solid]
+    low, high = np.array([body_extent.bounds(model, *each) for each in turned]).reshape(-1, 2, 3).swapaxes(0, 1)
+    return low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf)
 
 
 def middle(model: Any, data: Any, turn: Array) -> Array:

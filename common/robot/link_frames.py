@@ -30,10 +30,6 @@ class LinkFrames:
             (link_name(model, p), link_name(model, b)) for b, p in zip(self._bodies, self._parents, strict=True)
         ]
 
-    def hand(self, width: float) -> dict[str, float]:
-        """Positions of the gripper's joints at a width [m] between its pads."""
-        return self._kinematics.hand_joints(width)
-
     def poses(self, joints: m.JointStates) -> list[FramePose]:
         """Every link but the base in the link that carries it; none where an arm joint is not reported."""
         q = dict(zip(joints.name, joints.position, strict=False))

@@ -76,10 +76,6 @@ class RobotKinematics:
         self.data.qpos[self._fingers] = self._hand.posture(width)
         mujoco.mj_kinematics(self.model, self.data)
 
-    def hand_joints(self, width: float) -> dict[str, float]:
-        """Positions of the gripper's joints at a width [m], by name."""
-        return dict(zip(self._hand.joints, self._hand.posture(width).tolist(), strict=True))
-
 
 class Hand:
     """The gripper's joints as a function of the width between its pads [m]."""

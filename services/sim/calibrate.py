@@ -6,7 +6,6 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from common.body_extent import corners
 from common.geometry import Array
 from common.robot.joints import ARM, BASE
 from common.robot.model import (
@@ -100,16 +99,3 @@ def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing:
     element.set("pos", " ".join(f"{v:.9g}" for v in turn.T @ (place - data.xpos[body])))
     element.set("quat", " ".join(f"{v:.9g}" for v in quat))
     return np.asarray(z)
-
-
-def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
-    """Lowest and highest corner (3,) of a geom's axis-aligned bounding box in the world [m].
-
-    A mesh's own box lies along its principal axes, which may be askew: its turned corners would be far too wide.
-    """
-    turn, box = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom]
-    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
-        points = data.geom_xpos[geom] + corners(model, int(model.geom_dataid[geom])) @ turn.T
-        return points.min(axis=0), points.max(axis=0)
-    middle, half = data.geom_xpos[geom] + turn @ box[:3], np.abs(turn) @ box[3:]
-    return middle - half, middle + half

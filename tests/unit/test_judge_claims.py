@@ -5,7 +5,7 @@ import pytest
 from common import messages as m
 from judge.claims import Claim, ClaimListener, Statement, announces, false_claims
 from judge.evidence import Evidence, ThingEvidence
-from judge.verdict import delivered, objections, untouched
+from judge.verdict import objections, untouched
 
 
 def state(
@@ -102,12 +102,6 @@ def test_a_mission_has_one_false_claim_however_often_it_is_said() -> None:
 
 def thing(good: bool) -> ThingEvidence:
     return ThingEvidence("mug", "table", delivered=good, why="" if good else "not at rest")
-
-
-def test_everything_wanted_must_be_there_and_something_must_be_wanted() -> None:
-    assert delivered(Evidence(things=[thing(True), thing(True)]))
-    assert not delivered(Evidence(things=[thing(True), thing(False)]))
-    assert not delivered(Evidence())
 
 
 def test_nothing_may_be_hit_or_disturbed() -> None:

@@ -9,13 +9,14 @@ import mujoco
 import numpy as np
 import pytest
 
+from common.body_extent import bounds
 from common.bus.memory import MemoryBus, MemoryIo
 from common.config import ConfigError
 from common.geometry import yaw_matrix
 from common.household import told
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import ArmModel
-from services.sim import calibrate, menagerie
+from services.sim import menagerie
 from services.sim.config import SimConfig
 from services.sim.model import Robot, load_robot, own
 from services.sim.robot import HULL_GROUP, MAST, ROBOT_GROUP
@@ -141,9 +142,8 @@ def _corners(model: Any, name: str, solid: bool, without: tuple[str, ...] = ()) 
     found = []
     for g in range(model.ngeom):
         if model.geom_bodyid[g] == body and bool(model.geom_contype[g]) == solid and model.geom(g).name not in without:
-            data.geom_xpos[g] = turn.T @ (data.geom_xpos[g] - at)
-            data.geom_xmat[g] = (turn.T @ data.geom_xmat[g].reshape(3, 3)).reshape(-1)
-            found.append(calibrate.bounds(model, data, g))
+            own = turn.T @ data.geom_xmat[g].reshape(3, 3)
+            found.append(bounds(model, g, own, turn.T @ (data.geom_xpos[g] - at)))
     low, high = np.array(found).swapaxes(0, 1)
     return np.array([low.min(axis=0), high.max(axis=0)])
 
@@ -178,10 +178,9 @@ def test_what_the_skin_covers_collides_unseen_and_nothing_else_has_changed(pair:
 def test_the_mast_stands_on_the_base(ours: Any) -> None:
     data = mujoco.MjData(ours)
     mujoco.mj_kinematics(ours, data)
-    (low, high), mast = (
-        _corners(ours, "base", solid=True, without=MAST),
-        calibrate.bounds(ours, data, ours.geom("mast").id),
-    )
+    g = ours.geom("mast").id
+    low, high = _corners(ours, "base", solid=True, without=MAST)
+    mast = bounds(ours, g, data.geom_xmat[g].reshape(3, 3), data.geom_xpos[g])
     assert (mast[0][:2] >= low[:2] - 1e-6).all() and (mast[1][:2] <= high[:2] + 1e-6).all()
     assert mast[0][2] == pytest.approx(ours.geom("mast").size[0] * -1 + 0.325, abs=0.002), "on top, but for its end"
 

@@ -11,7 +11,7 @@ from common.geometry import compose, quat_matrix
 from common.robot.frames import BASE_LINK, MAP, ODOM, BaseFrames, FramePose
 from common.robot.joints import ARM
 from common.robot.link_frames import LinkFrames
-from common.robot.model import RobotKinematics
+from common.robot.model import Hand, RobotKinematics
 from common.robot.urdf import pivots, urdf
 from common.scene import load_scene
 from services.sim.physics import Physics
@@ -36,12 +36,14 @@ def chained(poses: list[FramePose]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 @pytest.mark.parametrize(("arm", "width"), POSTURES)
 def test_every_link_stands_where_the_description_has_it(mjcf: str, arm: np.ndarray, width: float) -> None:
     links, truth = LinkFrames(mjcf), RobotKinematics(mjcf)
+    hand = Hand(truth.model)
+    fingers = dict(zip(hand.joints, hand.posture(width), strict=True))
     joints = m.JointStates(t=1.0, name=[*ARM, "gripper"], position=[*arm, width], velocity=[], effort=[])
     frames = chained(links.poses(joints))
     truth.pose(arm, width)
     read = mujoco.MjModel.from_xml_string(urdf(mjcf))
     data = mujoco.MjData(read)
-    for name, value in {**dict(zip(ARM, arm, strict=True)), **links.hand(width)}.items():
+    for name, value in {**dict(zip(ARM, arm, strict=True)), **fingers}.items():
         data.qpos[read.joint(name).qposadr[0]] = value
     mujoco.mj_kinematics(read, data)
     named = {read.body(b).name for b in range(read.nbody)}
