@@ -19,6 +19,10 @@ ROOM = FOOTPRINT + 0.02
 """Clearance that the base's centre needs [m], as navigation plans with."""
 BIN_RIM = 0.02
 """Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
+WHEELS = 0.2
+"""Distance of the wheels from the base's middle [m]: what turning on the spot rolls, and errs by."""
+WAY_COST = 0.15
+"""What the way to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
 HANDED, BEFORE = 0.65, math.radians(45)
 """Distance [m] and direction against ahead [rad] of the edge of a surface up to which what is brought can be put on it
 from the robot's home: the arm reaches 0.1 m farther, without a step aside."""

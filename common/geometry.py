@@ -21,7 +21,7 @@ Number = TypeVar("Number", float, NDArray[np.floating])
 
 
 def wrap(angle: float) -> float:
-    """The same angle in (-pi, pi]."""
+    """The angle [rad] brought into (-pi, pi]."""
     wrapped = math.fmod(angle + math.pi, 2 * math.pi)
     return wrapped - math.pi if wrapped > 0 else wrapped + math.pi
 
@@ -123,7 +123,7 @@ class Rectangle(NamedTuple):
         return found
 
     def grown(self, margin: float) -> "Rectangle":
-        """The same rectangle with every side `margin` [m] farther out."""
+        """The rectangle with every side `margin` [m] farther out."""
         return self._replace(length=self.length + 2 * margin, width=self.width + 2 * margin)
 
 

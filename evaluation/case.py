@@ -136,7 +136,7 @@ class Case(msgspec.Struct, kw_only=True):
 
     @property
     def faults(self) -> int:
-        """How many faults it injects."""
+        """Faults that the case injects [count]."""
         return len(self.rules) + len(self.physical) + len(self.timed_faults)
 
 

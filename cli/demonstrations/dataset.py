@@ -62,7 +62,7 @@ class Dataset:
 
     @property
     def frames(self) -> int:
-        """How many it has in all episodes."""
+        """Frames of all episodes [count]."""
         return int(self._info["total_frames"])
 
     def add(self, episode: Episode) -> None:

@@ -40,8 +40,10 @@ class Conversation:
         self._next(0.2)
 
     def require_open(self) -> None:
-        """Raises:
-        CliError: the robot takes no command now.
+        """Check that the robot takes a command now.
+
+        Raises:
+            CliError: it does not.
         """
         why = self.closed()
         if why:

@@ -61,7 +61,7 @@ class Floor:
         self._taken |= self._inside(area)
 
     def copy(self) -> "Floor":
-        """The same floor, to try something on."""
+        """A copy of the floor, to try something on."""
         other = object.__new__(Floor)
         other.__dict__ = self.__dict__ | {"_taken": self._taken.copy(), "_kept": self._kept.copy()}
         return other

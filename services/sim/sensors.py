@@ -6,6 +6,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.approach import WHEELS
 from common.bus.port import Io
 from common.geometry import IDENTITY_POSE, Array, Pose2, compose, inverse
 from common.robot.joints import JOINTS
@@ -30,8 +31,6 @@ PLAY_TRAVEL = 0.002
 """Travel of the pads after which they lie in their play as if never seen before [m]; chosen."""
 BLOCK = 500
 """Readings whose errors are drawn at once [count]: one by one they would cost more than the reading."""
-_TURN_RADIUS = 0.2
-"""Distance of the wheels from the base's middle [m]: what turning on the spot rolls."""
 SLIP = 0.1
 """Share of the way that the wheels miss while they slide (chosen: what an anti-lock brake of a car aims at)."""
 
@@ -112,7 +111,7 @@ class WheelOdometry:
             return self.believed
         dx, dy, turn = compose(inverse(self._true), true)
         self._true = true
-        moved = math.hypot(dx, dy) + _TURN_RADIUS * abs(turn)
+        moved = math.hypot(dx, dy) + WHEELS * abs(turn)
         if moved < 1e-7:
             return self.believed
         ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()

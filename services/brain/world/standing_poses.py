@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from common.approach import ROOM, clearance, delivers_at_home, poses_for
+from common.approach import ROOM, WAY_COST, clearance, delivers_at_home, poses_for
 from common.floor_plan import FloorPlan
 from common.furniture_tops import support_at
 from common.geometry import Point, Pose2, wrap
@@ -16,8 +16,6 @@ FARTHEST = DISTANCES[-1]
 """Distance [m] of the base from an object up to which its print is read from where the robot stands."""
 APART = 0.6
 """Angle [rad] to the directions from which it was seen that shows another side. Chosen: a third of what a can shows."""
-WAY_COST = 0.15
-"""What a metre of way adds to a pose's penalty [m/m]: the weight with which navigation compares its own poses."""
 
 
 def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:

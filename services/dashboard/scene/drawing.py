@@ -183,7 +183,7 @@ def _geom(model: Any, g: int, colours: Array) -> Mesh:
 
 
 def moved(mesh: Mesh, place: Array, turn: Array) -> Mesh:
-    """The same mesh at `place`, turned by the rotation matrix `turn`."""
+    """The mesh turned by the rotation matrix `turn` and shifted to `place` [m]."""
     return Mesh(mesh.vertices @ turn.T + place, mesh.faces, mesh.colours)
 
 

@@ -9,13 +9,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from common.approach import WHEELS
 from common.geometry import Array, Pose2, compose, inverse, wrap
 from services.navigation.localisation.distance_field import DistanceField
 
 SHARE, WALK = 0.03, 0.01
 """Error of odometry: a share of the motion [-] and a random walk [m or rad per sqrt(m)]; chosen: on the safe side."""
-TURN_RADIUS = 0.2
-"""Motion that a turn counts as [m/rad]; chosen: about the distance of the wheels from the middle."""
 SIGMA = 0.03
 """Standard deviation of one end point [m]: more than its noise, since neighbours err together."""
 STEPS = 6
@@ -73,7 +72,7 @@ class Localiser:
             return self.pose
         c, s = math.cos(self.pose[2]), math.sin(self.pose[2])
         f = np.array([[1, 0, -s * dx - c * dy], [0, 1, c * dx - s * dy], [0, 0, 1]])
-        moved = math.hypot(dx, dy) + TURN_RADIUS * abs(turn)
+        moved = math.hypot(dx, dy) + WHEELS * abs(turn)
         place = (SHARE * moved) ** 2 + WALK**2 * moved
         self.covariance = f @ self.covariance @ f.T + np.diag([place, place, place])
         self.pose = compose(self.pose, (dx, dy, turn))

@@ -24,7 +24,7 @@ class Scan:
     range_max: float
 
     def after(self, motion: Pose2) -> "Scan":
-        """The same for a base that has moved by `motion` since."""
+        """The scan as points in the frame of a base that has moved by `motion` since."""
         back = transformed((-motion[0], -motion[1], -motion[2]), self.points)
         return Scan(back, self.ranges, self.angles, self.reach, self.lidar, self.range_max)
 

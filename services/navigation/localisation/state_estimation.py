@@ -100,7 +100,7 @@ class StateEstimator:
         io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
     def age(self, now: float) -> float:
-        """How old what `pose` was measured by is [s]."""
+        """Age [s] of the measurement that `pose` rests on."""
         return now - self._measured
 
     def silence(self, now: float) -> float:

@@ -115,7 +115,7 @@ class Navigator:
 
     @property
     def begun(self) -> bool:
-        """It has planned its way."""
+        """The first plan has been made."""
         return self._targets.start is not None
 
     def ahead(self, pose: Pose2, now: float) -> list[Point]:

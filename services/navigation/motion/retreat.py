@@ -35,7 +35,7 @@ class Retreat:
         self._back, self._until, self._corridor = back, until, corridor
 
     def over(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> bool:
-        """It is time to look for another path."""
+        """The retreat has ended: it is time to look for another path."""
         return now >= self._until
 
     def step(self, pose: Pose2, points: Array | None) -> Pose2:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
+from common.approach import WAY_COST
 from common.geometry import Point, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.obstacle_tracker import Obstacle
@@ -21,8 +22,6 @@ SHORTER = 0.85
 """A new path replaces a free one only if it is this much shorter [-]; chosen: so that it does not waver between two."""
 HERE = 0.05
 """A pose this near is where the robot stands [m], free or not: the costmap's resolution."""
-WAY_COST = 0.15
-"""What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
 ROUND = 1.0
 """How much longer a detour is that leads another way and not just round something [m]; chosen: round a person."""
 BY = 1.0

@@ -108,7 +108,10 @@ class Costmap(Cells):
         return self._distance[1]
 
     def distance_to_things(self, now: float = math.inf) -> Array:
-        """The same as if nobody stood anywhere; by `now` [s] also without who may not have been seen to walk yet."""
+        """Distance [m] of each cell as if nobody stood anywhere.
+
+        By `now` [s] also without who may not have been seen to walk yet.
+        """
         return self._distances(self.obstacles.settled(now))
 
     def _distances(self, seen: Mask) -> Array:

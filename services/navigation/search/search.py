@@ -28,7 +28,7 @@ class Search:
 
     @property
     def looked(self) -> int:
-        """How many viewpoints were taken or tried."""
+        """Viewpoints that were taken or tried [count]."""
         return len(self._tried)
 
     def timed_out(self, now: float) -> bool:

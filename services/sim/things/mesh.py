@@ -24,11 +24,11 @@ class Mesh:
     uv: Array
 
     def moved(self, by: tuple[float, float, float]) -> "Mesh":
-        """The same mesh elsewhere."""
+        """The mesh shifted `by` a vector [m]."""
         return Mesh(self.vertices + by, self.faces, self.uv)
 
     def painted(self, u: float, v: float) -> "Mesh":
-        """The same mesh in the colour that the texture has at one point."""
+        """The mesh in the one colour that its texture has at the point (u, v)."""
         return Mesh(self.vertices, self.faces, np.tile((u, v), (len(self.uv), 1)))
 
 

@@ -41,7 +41,7 @@ class Decoded:
 
     @property
     def tokens(self) -> int:
-        """How many tokens it has."""
+        """Tokens of the text, the final one included [count]."""
         return len(self.numbers)
 
 
