@@ -42,7 +42,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     for pattern, result in (
         # Whom or what it is for.
         (rf"(?:go|nip|pop|run|walk|drive|head|dash|hop|come)(?: over| back)? (?:to|into) {NP} for "
-         r"((?:the|my|an?|some) .+)", r"bring me \2"),
+         r"((?:the|my|an?|some) .+)", r"bring me \2 from \1"),
         (r"((?!look|search|wait|check|hunt|ask|go|nip|pop|run|walk|drive|head|dash|hop|come)\w+ .+) "
          r"for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
          r"him|her|them|"
@@ -120,6 +120,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:need|want|would like|would love|could use|could do with|looking for|fancy|after) (?!to\b|you\b){NP}",
          r"i want \1"),
         (rf"(?:i|we) (?:am|are|was|were) looking for {NP}", r"find \1"),
+        (r"(?:i|we) will (?:take|have) (it|that|this|those|them)(?: (?:off|from|out of) (?:you|your hands?))?",
+         r"bring me \1"),
         # Coming with something is bringing it.
         (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
         (rf"(?:go|drive|walk|run|head|come) (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),

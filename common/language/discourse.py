@@ -11,7 +11,7 @@ from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
 from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
-from common.language.lexicon import A_VERB, COMMANDING
+from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.politeness import without_politeness
@@ -57,14 +57,17 @@ _ANNOUNCED = re.compile(
 )
 """What only says that an enumeration comes: `bring me two things: the mug and the can`."""
 _WHAT_IS_HELD = re.compile(
-    rf"\b(?P<verb>{A_VERB} (?:(?:me|us|down|back|away) )?)(?:what(?:ever)?|the thing|anything|everything) (?:that )?"
-    r"you(?: are|'re) (?:holding|carrying)\b",
+    rf"\b(?:(?P<verb>{A_VERB} (?:(?:me|us|down|back|away|over) )?)(?:what(?:ever)?|the thing|anything|everything) "
+    r"(?:that )?you(?: are|'re) (?:holding|carrying)|"
+    rf"(?P<handed>(?:{'|'.join(sorted(HANDLING))}) (?:(?:me|us|down|back|away|over) )?)what(?:ever)? (?:that )?"
+    r"(?:you(?: have|'ve) got|you have|is in your hand)(?: there| in your hand)?)(?=$|[ ,;.!?])",
     re.IGNORECASE,
 )
 """`whatever you're holding` behind a verb: it."""
 _EMPTIED = re.compile(
     r"\b(?:empty|clear|clear off|clear out) (?P<from>(?:the|my|our) \w+(?: \w+)?)[,;.]? (?:and )?"
-    r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of it|the lot)(?: goes)? "
+    r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of (?:it|them)|the lot|"
+    r"both(?: things| items| of them)?|(?:its|the) contents)(?: goes?)? "
     r"(?P<to>(?:on|onto|in|into|to) .+)$"
 )
 """`empty the table, everything onto the shelf`: what is taken from where, and where it goes."""
@@ -95,7 +98,7 @@ _NEXT = frozenset(
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
-    text = _WHAT_IS_HELD.sub(r"\g<verb>it", text)
+    text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
     listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
     whole = without_fillers(as_speech(expand(normalise(listed, ",;.!?"))))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))

@@ -120,6 +120,7 @@ _FRAMES = (
     r"can(?= (?:bring|fetch|give|put|go|come|find|tidy|clean|help)\b)",
     r"(?:might|may|could) i (?:\w+ )?(?:impose (?:up)?on|trouble|ask|bother|prevail (?:up)?on) you to(?= \w)",
     rf"(?:execute|perform|initiate|commence|proceed to|carry out)(?: an?| the)?(?= {A_VERB}\b)",
+    r"(?:i|we) (?:was|am|were|are) wondering (?:if|whether)(?= .+ (?:could|might|can|may) (?:come|go|get|be|move)\b)|"
     r"want to(?=\s+\w)|(?<=please )(?:you|to)(?= \w)",
     r"you(?= (?:bring|give|take(?= .+ (?:to|from|off|out|into|and|up)\b)|go|get|fetch|throw|find|come|carry|move|"
     r"clean|tidy|grab|pick)\b"
@@ -197,7 +198,8 @@ _ENDINGS = (
     r"(?:and |but )*do not (?:let (?:it )?go(?: of it)?|bring it)|(?:and |but |just )*hold (?:on to |onto )?it|"
     r"or (?:so help me|else)|by the time .+|(?:good)?bye(?: bye)?|"
     r"and leave (?:it|them)(?: there| alone)?|(?<!are )(?<!is )you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
-    "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"
+    "(?:please |and )*(?:remember|note|memori[sz]e) (?:that|it|this|everything)|"
+    "(?:and |please )*do not (?:you )?forget (?:that|it)|"
     "one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "
     "(?:come|arrive))|already|altogether|in total|in all|overall|(?:(?:would|do) you )?mind (?:having|taking) a "

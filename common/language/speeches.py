@@ -15,6 +15,7 @@ _TOLD_TO_DO = re.compile(
     r"(?P<what>(?!me\b|us\b)\w.*)$"
 )
 """What somebody is to be told to do."""
+_LET_KNOW = re.compile(rf"{_BEGIN}let {_WHOM}(?P<where> (?:in|at) (?:the|my|our) \w+(?: room)?) know(?: that)? (?=\w)")
 _CRIED = re.compile(
     rf"{_BEGIN}(?:(?:shout|yell|holler|cry|call)(?: out)?(?: (?:loudly|please))*(?P<mark>,| that)"
     r"|(?:shout|yell|holler|cry)(?: out)?) (?!at\b|for\b|if\b|when\b|to\b|out\b)(?=\w)"
@@ -45,7 +46,7 @@ TO_BE_SAID = re.compile(r"(?:^|(?<=[,.;!?] )|(?<= and )|(?<= then )|(?<=please )
 
 def as_speech(text: str) -> str:
     """Normalised text with what is to be said behind `say` and `tell them`: `shout dinner`, `tell mum to come`."""
-    text = _TOLD_TO_DO.sub(_told, text)
+    text = _LET_KNOW.sub(r"\g<before>tell them\g<where> that ", _TOLD_TO_DO.sub(_told, text))
     return _CEREMONY.sub(r"\g<before>say ", _CRIED.sub(r"\g<before>say ", text))
 
 

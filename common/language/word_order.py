@@ -33,6 +33,10 @@ _MOVED = re.compile(
 )
 
 
+_ASKED_TO_GO = re.compile(
+    rf"^(?:can|could|might|may|should|would) {NP} (?:go|come|get|move)(?: back| over)* ({TO_PLACE}) {NP}$"
+)
+"""Where a thing is to go, as a question."""
 _QUESTION = re.compile(
     r"^(?:what(?! (?:i|we|you)\b)|where|who|whose|which|why|when|how|is|are|was|were|does|did|has|do "
     r"(?:you|i|we|they)|"
@@ -100,6 +104,9 @@ def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
             yield f"{verb} {found[1]}{found[3] or ''}"
     if found := _COMES.match(text):
         yield f"bring me {found[1]}"
+    if (found := _ASKED_TO_GO.match(text)) and words[1] not in ("you", "i", "we", "he", "she", "they"):
+        home = found[2] == "to" and found[3] in ("me", "us")
+        yield f"bring me {found[1]}" if home else f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     if (found := _MOVED.match(text)) and words[0] != "anything":
         yield f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     yield from _topic(words)

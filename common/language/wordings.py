@@ -32,7 +32,8 @@ WORDINGS: tuple[Wording, ...] = (
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
         " | [there is] no need [for (it | that)] [any more] | cancel cancel | abort abort | abort mission"
         " | never mind | nevermind | [no | nah | nope] forget [about] (it | that) | leave it [be | then] | skip it | "
-        "drop that | call it off | (forget | ignore) [that] i (asked | said (anything | that | it) | spoke)"
+        "drop that | call it off | call off the (search | hunt) |"
+        " (forget | ignore) [that] i (asked | said (anything | that | it) | spoke)"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
         " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
         " | (that | it) will do [for (now | today)] [thanks] | (i | we) (no longer | do not) (need "
@@ -161,7 +162,9 @@ WORDINGS: tuple[Wording, ...] = (
         "look_around",
         "(look | take a look | have a look | go and look | glance | scan | search) [all] (around | about | round)"
         " [the (room | flat | place | apartment) | you | here | in here]"
-        " | (look | search | scan) [around] everywhere | scan the (room | surroundings) | turn (around | round)",
+        " | (look | search | scan) [around] everywhere | turn (around | round)"
+        " | [go [and]] (look [at] | scan | survey | observe | inspect | explore | study | take in | check [out])"
+        " ([(all | everything)] [that | what] is around you | (the | your) [whole] (room | surroundings | area))",
         heard="[take a] look around",
     ),
     Wording(

@@ -31,6 +31,30 @@ from tests.everyday import Sentence, understand, verdict
         ("-", "bottle, the green one, over to me", "fetch(green bottle)"),
         # Where to look for what was not found.
         ("failed:find my keys", "perhaps they fell behind something. check the bedroom", "goto(bedroom); find(keys)"),
+        # Taken over from the hand, in whatever words; what the hand holds.
+        ("held:red mug", "i'll take that off you, come", "fetch(red mug)"),
+        ("held:apple", "hand over what you've got there", "fetch(apple)"),
+        ("held:apple", "have you still got hold of the apple?", "answer(apple)"),
+        # Said of where the robot is.
+        ("last:go to the study", "now you're there get me the mug", "fetch(white mug)"),
+        # Where a thing is to go, as a question or as a wonder.
+        ("-", "could the green can go on the desk", "put(green can, desk)"),
+        ("-", "i was wondering whether the box from the desk might find its way to me", "fetch(orange box)"),
+        # All that is on one surface onto another, by number.
+        ("-", "empty the desk: both things onto the counter", "put(white mug, counter) & put(orange box, counter)"),
+        # A cry before a request, and one that only tells.
+        ("-", "quick, a wasp! hand me the newspaper", "fetch(newspaper)"),
+        ("-", "sorry, got a bee in my bonnet", "none()"),
+        # What nobody can carry, and where nobody can go.
+        ("-", "move the washing machine to the kitchen", "refuse()"),
+        ("-", "pop over to the chemist for my pills", "none()"),
+        # Known things in the plural are no kind.
+        ("-", "my vitamins ought to be on the dresser rather than the desk", "put(orange box, dresser)"),
+        ("-", "let my wife in the study know that lunch is ready", "goto(study); say(lunch is ready)"),
+        ("-", "survey the room and remember everything", "look()"),
+        # Called off in one part of what is said.
+        ("busy:find my keys", "got them! you can call off the search", "stop()"),
+        ("busy:bring me the apple", "cancel that! bring me the green can", "replace: fetch(green can)"),
     ],
 )
 def test_the_form_is_understood(context: str, said: str, right: str) -> None:

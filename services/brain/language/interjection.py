@@ -139,7 +139,7 @@ def by_wording(said: str, doing: str = "") -> tuple[Interjection, float]:
 
 
 def _words(said: str) -> str:
-    return without_fillers(expand(normalise(said, ",")))
+    return without_fillers(expand(re.sub(r"[.;!?]+", ",", normalise(said, ",.;!?")).strip(" ,")))
 
 
 def _worded(said: str, words: str, doing: str) -> Interjection | None:
@@ -155,14 +155,22 @@ def _control(said: str, words: str) -> Interjection | None:
     now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
-    first, _, reason = words.partition(", ")
-    if reason and asks_for(words.rpartition(", ")[2], "cancel") and not verb_first(words):
+    if _called_off_in_part(words):
         return Interjection("cancel", said)
+    first, _, reason = words.partition(", ")
     if asks_for(words.rpartition(", ")[2], "stop"):
         return Interjection("stop", said)
     if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
     return Interjection("stop", said) if _ONE_MOMENT.match(words) else None
+
+
+def _called_off_in_part(words: str) -> bool:
+    """Does a part call off what is under way, while no other asks for anything: `got them, you can leave it`?"""
+    parts = [without_politeness(part) for part in words.split(", ")]
+    off = [bool(asks_for(part, "cancel") or _CALLED_OFF.match(part)) for part in parts]
+    others = [part for part, is_off in zip(parts, off, strict=True) if not is_off]
+    return any(off) and not any(verb_first(part) and not part.startswith("got ") for part in others)
 
 
 def _replacement(said: str, words: str, doing: str) -> Interjection | None:

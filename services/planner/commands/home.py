@@ -40,7 +40,9 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     """`mugs go on the shelf`: of all of a kind, not of the one that is meant by "the mug"."""
     things = slots["thing"]
     phrase = read(things, builder.vocabulary)
-    plural = isinstance(phrase, Phrase) and (phrase.plural or (phrase.sense.new and _is_plural(things[-1])))
+    plural = isinstance(phrase, Phrase) and (
+        (phrase.plural and not phrase.sense.names) or (phrase.sense.new and _is_plural(things[-1]))
+    )
     whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but or phrase.count > 1)
     if things[0] in ONES or not (plural and whole):
         lost = Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")

@@ -42,6 +42,12 @@ def _asked(clause: str, certain: bool) -> str:
     return clause[: apart.start()] if apart else clause
 
 
+_INTO = frozenset({"to", "into"})
+_RELATED = frozenset({"next", "close", "near", "closer", "nearest", "closest", "belongs", "belong"})
+_DEFINITE = (("the",), ("my",), ("our",))
+"""Words around the name of a place where somebody is sent."""
+
+
 class _Trace:
     """All that the steps touch: things, what these are called, where they are and go. `certain`: all have been seen."""
 
@@ -71,8 +77,18 @@ class _Trace:
                 found += [] if modal or self._has(words[at]) else [words[at]]
             elif not self._has_place(words[at:end]):
                 found.append(" ".join(words[at:end]))
+            if (elsewhere := self._unknown_place(words, at)) is not None:
+                found.append(elsewhere)
             at = max(end, at + 1)
         return found
+
+    def _unknown_place(self, words: Words, at: int) -> str | None:
+        """`market` of `to the market`, where nobody knows such a place and no step has to do with such a thing."""
+        if words[at] not in _INTO or words[at - 1] in _RELATED or words[at + 1 : at + 2] not in _DEFINITE:
+            return None
+        name, ends = words[at + 2 : at + 3], range(at + 3, at + 3 + MOST_WORDS)
+        is_known = not name or self._vocabulary.noun(name[0]) or any(self._is_place(words[at + 2 : e]) for e in ends)
+        return None if is_known or not self._vocabulary.unlisted(name) else name[0]
 
     def _may_be_noun(self, words: Words, at: int) -> bool:
         before = words[at - 1] if at else ""

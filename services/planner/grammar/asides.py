@@ -24,17 +24,17 @@ _LIMITING = frozenset({
 """Words of a part that says something about the rest."""
 
 
-def without_asides(text: str, idle: Callable[[Words], bool]) -> str:
+def without_asides(text: str, idle: Callable[[Words, bool], bool]) -> str:
     """Normalised text with marks, without the parts that are `idle` and limit nothing of the rest.
 
-    The text as it is where none or all of them are.
+    `idle` is told whether a part is an exclamation. The text as it is where none or all of them are.
     """
     pieces = _MARKS.split(text)
     parts, marks = pieces[::2], [*pieces[1::2], ""]
     kept = [
         (part, mark)
         for part, mark in zip(parts, marks, strict=True)
-        if part and not ((words := tuple(part.split())) and _says_nothing(words) and idle(words))
+        if part and not ((words := tuple(part.split())) and _says_nothing(words) and idle(words, "!" in mark))
     ]
     if not kept or len(kept) == len(list(filter(None, parts))):
         return text

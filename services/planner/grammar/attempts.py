@@ -7,7 +7,7 @@ from common.language.clauses import cut_clauses
 from common.language.contractions import expand
 from common.language.discourse import commands
 from common.language.lexicon import COMMANDING
-from common.language.meaning import WORDS
+from common.language.meaning import VERBS, WORDS
 from common.language.normalise import Words, normalise
 from common.messages import PlanStep
 from services.planner.choice_points import ChoicePoints
@@ -25,6 +25,8 @@ from services.planner.semantic.parse import parse
 from services.planner.semantic.ranker import rank
 from services.planner.world import World
 
+LONGEST_CRY = 5
+"""Words of the longest exclamation that names something and asks for nothing, `a wasp!` (chosen)."""
 IDLE = 0.7
 """Least probability that a part of a sentence asks for nothing, so that the rest is read by itself (chosen)."""
 
@@ -109,8 +111,10 @@ class Attempts:
         )
         return [text for text in dict.fromkeys(shorter) if text != whole]
 
-    def _is_idle(self, words: Words) -> bool:
-        """Do the words name nothing and most likely ask for nothing?"""
+    def _is_idle(self, words: Words, exclaimed: bool) -> bool:
+        """Do the words name nothing, or nothing known where they are exclaimed, and most likely ask for nothing?"""
+        if exclaimed and len(words) <= LONGEST_CRY:
+            return VERBS.isdisjoint(words) and not chunks(words, self._vocabulary, pronouns=True)
         if (
             not self._config.guess
             or words[0] in COMMANDING

@@ -91,7 +91,7 @@ def _command(words: Words, builder: PlanBuilder, before: Words, at: int, alone: 
     builder.effort[0] += 1
     if builder.effort[0] > MAX_EFFORT:
         raise Refusal("that is too long a sentence for me")
-    words = (infinitive(words[0], VERBS), *words[1:])
+    words = words if words[0] == "got" else (infinitive(words[0], VERBS), *words[1:])
     reason = _apply(words, builder, before, alone)
     if (
         reason is not None

@@ -32,6 +32,11 @@ _ELSEWHERE = re.compile(
     r"(?: (?:in|on|at|inside))? (?:the|my|our) (?P<place>\w+(?: \w+){0,2})$"
 )
 """Where else something may be that was not found."""
+_BEING_THERE = re.compile(
+    r"^(?:(?:right|ok|okay|good|well) )*(?:now|while|since|as|because)(?: that)? you are (?:already |still )?there "
+    r"(?:and |so |please )*(?P<rest>.+)$"
+)
+"""Before what is asked for of a robot where it is."""
 _NO_THERE = re.compile(
     rf"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?P<place>(?:{'|'.join(sorted(PREPOSITIONS))}) .+)$"
 )
@@ -54,6 +59,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     outcome = told.last.outcome if told.last is not None else ""
     if outcome == "failed" and clauses and (place := _elsewhere(clauses[-1], is_place)):
         return _from(normalise(last).split(), place)
+    if last and (there := _BEING_THERE.match(expand(normalise(command)))):
+        return _from_there(without_politeness(there["rest"]), last, is_place) or command
     if not last or len(clauses) != 1:
         return command
     for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
@@ -81,6 +88,14 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
             again = replaced(normalise(last), thing, is_place)
             return (_from(again.split(), place) if again and place else again) or command
     return command
+
+
+def _from_there(asked: str, last: str, is_place: IsPlace) -> str:
+    """What is asked for of a robot that has just been sent somewhere, from there; "" where nothing is to be fetched."""
+    words = normalise(last).split()
+    place = next((words[at:] for at in range(1, len(words)) if is_place(tuple(words[at:]))), [])
+    fetched = asked.split()[:1] in (["bring"], ["get"], ["fetch"], ["grab"]) and PREPOSITIONS.isdisjoint(asked.split())
+    return _from(asked.split(), " ".join(place)) if place and fetched else ""
 
 
 def _elsewhere(said: str, is_place: IsPlace) -> str:

@@ -30,7 +30,7 @@ _SMALL = (
     " something somewhere still than then there they to too under until up us was we were what when where whether"
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
-    " today tonight never ever always others"
+    " earlier recently whoever whichever whatever today tonight never ever always others"
     " about around through across along against during yourself self"
     " think believe guess suppose reckon hope know remember"
     " lot goes belongs gets lying standing closest might should must ought said says told asked teh"
@@ -49,7 +49,7 @@ NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
 """Words that are part of no thing's name."""
 HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 ABSTRACT: frozenset[str] = frozenset((files(__package__) / "abstract_nouns.txt").read_text(encoding="utf-8").split())
-"""Nouns of what cannot be carried: `bring me luck` asks for nothing that could be found."""
+"""Nouns of what cannot be carried: neither luck, which nobody could find, nor a piano."""
 
 
 class Sense(msgspec.Struct, frozen=True):
