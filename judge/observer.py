@@ -11,6 +11,7 @@ import numpy as np
 
 from common import messages as m
 from common.body_extent import lowest
+from common.robot.joints import BASE, BASE_BODY
 from common.robot.model import Hand, pads, subtree
 from common.scene import ObjectSpec, Scene, body_name
 from common.support import support
@@ -135,7 +136,7 @@ class Replica:
         model = self._model
         self._specs: list[ObjectSpec] = list(scene.objects)
         self._body = {o.name: model.body(body_name(o)).id for o in self._specs}
-        self._is_robot = model.body_rootid[model.geom_bodyid] == model.body("base").id
+        self._is_robot = model.body_rootid[model.geom_bodyid] == model.body(BASE_BODY).id
         self._owner = np.full(model.ngeom, -1)
         for number, body in enumerate(self._body.values()):
             self._owner[model.geom_bodyid == body] = number
@@ -145,7 +146,7 @@ class Replica:
         self._fingers_at = [model.joint(j).qposadr[0] for j in hand.joints]
         self._widths = np.linspace(0.0, hand.open, round(1000 * hand.open) + 1)
         self._postures = np.array([hand.posture(float(w)) for w in self._widths])
-        self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
+        self._base_at = [model.joint(j).qposadr[0] for j in BASE]
         starts = [model.joint(body_name(o)).qposadr[0] for o in self._specs]
         self._poses_at = np.array(starts, dtype=int).reshape(-1, 1) + np.arange(7)
         self._poses = np.full(self._poses_at.shape, np.nan)
