@@ -22,6 +22,7 @@ from services.manipulation.grasps.grasp_store import GraspStore
 from services.manipulation.planning.object_source import ObjectSource
 
 DESCRIPTION_PATIENCE = 3.0
+"""How long a goal waits for the robot's description [s]; chosen: it is latched and comes at once."""
 LETTING_GO = "release"
 """The phase of placing in which the fingers open."""
 

@@ -14,9 +14,11 @@ from common.robot.model import Hand, arm_forward, arm_limits, home_arm
 
 Array = NDArray[np.float64]
 BOXES = 24
+"""Obstacles that the model has places for [count], the nearest first; chosen."""
 FAR = 50.0
-# What the open fingers leave free beside the thing they go around [m].
+"""Where places for obstacles wait that are not needed [m]: farther than any home is large."""
 FINGER_ROOM = 0.009
+"""What the open fingers leave free beside the thing they go around [m]."""
 Solid = Literal["box", "cylinder", "ellipsoid"]
 """What stands for an object or a piece of furniture where distances and collisions are computed."""
 

@@ -10,11 +10,17 @@ from common.robot.joints import ARM
 from services.manipulation.arm.arm_model import ArmModel, Array, Pose
 
 ITERATIONS = 60
+"""Most steps from one start [count]; chosen."""
 DT = 0.25
+"""Time that a step integrates its velocity over [s]; chosen: no joint turns by more than 0.6 rad in one."""
 POSITION_TOLERANCE, ANGLE_TOLERANCE = 0.0015, 0.02
+"""Errors of the hand's pose [m, rad] within which it has arrived; chosen."""
 CLEARANCE = 0.005
+"""Distance [m] that the hand keeps from the nearest boxes and the deck; chosen."""
 _SPEED = dict.fromkeys(ARM[:4], 2.0) | dict.fromkeys(ARM[4:], 2.5)
+"""Largest speed of each joint in a step [rad/s]; chosen."""
 _STALL = 1e-4
+"""Gain of a step, errors of place and angle together [m + rad], below which it counts as none; chosen."""
 
 
 class InverseKinematics:

@@ -24,7 +24,9 @@ from services.manipulation.planning.object_source import ObjectSource
 T = TypeVar("T")
 Steps = Generator[None, None, T]
 DT = 0.02
+"""Period of a step and of the arm's commands [s]: the service's 50 Hz."""
 GRIPPER_TICKS = 5
+"""Steps between two commands to the gripper [count]: 10 Hz."""
 SHORT = 0.05
 """Error [rad] of a joint, at rest, from which the arm has not arrived: some 3 cm of the hand. Chosen: it sags by
 less."""

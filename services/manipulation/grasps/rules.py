@@ -31,6 +31,7 @@ UNSEEN = (0.1, 0.35)
 """Share of the points that may be lower, and the height, by the whole, below which nothing else was seen of an object
 whose lower part is not seen: a stapler's black foot, the legs of a toy."""
 _BESIDE, _ABOVE = (15, 25, 40, 60, 90), (90, 65, 45, 30)
+"""Approaches of what is tall and of what is low [deg] below horizontal, in order of trying."""
 BY_SHAPE: dict[str, tuple[GraspRule, ...]] = {
     "round": (GraspRule("around", _ABOVE, most=0.07), GraspRule("around", _BESIDE, least=0.07)),
     "box": UNKNOWN.grasps,

@@ -11,10 +11,9 @@ from services.perception.segments.dark import Blobs, Pixels, guessed
 from services.perception.segments.segment import Segment, Surface, covered
 from services.perception.views.view import Mask, View
 
-JUMP = 0.022
-"""Step of depth [m] between neighbouring pixels that separates two objects; `JUMP_PER_METRE` is added per metre [m/m],
-as depth noise and the slope between two pixels grow with the distance."""
-JUMP_PER_METRE = 0.012
+JUMP, JUMP_PER_METRE = 0.022, 0.012
+"""Step of depth [m] between neighbouring pixels that separates two objects, and what is added per metre [m/m], as depth
+noise and the slope between two pixels grow with the distance."""
 JOIN = 0.02
 """Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
 JOINED_EXTENT, LONGEST = 0.17, 0.30

@@ -29,6 +29,7 @@ TRIES, SETTLED = 15, 0.001
 TINY = 1e-12
 """Stands in for a length of zero in a division [m]."""
 _CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+"""Of a box on the floor plan, in half extents [x, y]."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from common.geometry import Array
 ENOUGH = 1e-6
 """A step that lowers the cost by less than this share is the last."""
 TINY = 1e-12
+"""What no divisor falls below [of its unit, or of the largest]."""
 # What is known at unknowns (k,): the residuals (n,) and their slopes (n, k).
 Residuals = Callable[[Array], tuple[Array, Array]]
 
