@@ -38,11 +38,12 @@ class Channel:
     """One goal at a time to one peer process.
 
     A status counts when it names the outstanding goal and attempt. A peer of bare texts names none: its statuses count
-    for whatever is outstanding. Nothing counts that arrived before the goal was sent.
+    for whatever is outstanding. Nothing counts that arrived before the goal was sent. `words`: where the peer takes
+    goals in words, as `stop` is one.
     """
 
-    def __init__(self, io: Io, peer: str) -> None:
-        self._io, self.peer = io, peer
+    def __init__(self, io: Io, peer: str, words: Topic[Any] | None = None) -> None:
+        self._io, self.peer, self.words = io, peer, words
         self.before_send: Callable[[], None] = lambda: None
         self.resuming = False
         self.goal_id = ""

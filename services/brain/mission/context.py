@@ -1,7 +1,6 @@
 """What the leaves of both trees share: time, bus, mission, gripper, peers, and what is shown to the world."""
 
 from itertools import pairwise
-from typing import Any
 
 from py_trees.common import Status
 
@@ -13,7 +12,6 @@ from common.language.meaning import is_question
 from common.naming.names import normalise
 from common.naming.place_named import FLOOR, place_named, take_place
 from common.plan_rules import known_world
-from common.topic import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
 from common.whereabouts import likelihood, points_at
 from services.brain.config import BrainConfig
@@ -199,24 +197,25 @@ class Context:
         self.io.log.info("mission ended", outcome=outcome, reason=reason)
 
     # --- goals that nobody waits for
-    def send_only(self, channel: Channel, topic: Topic[Any], text: str) -> str:
-        """Send a goal whose result nobody awaits; returns its id."""
+    def send_only(self, channel: Channel, text: str) -> str:
+        """Send a goal in words whose result nobody awaits; returns its id."""
         goal_id = self.mission.next_goal()
-        channel.send_only(topic, topic.type(goal=text, id=goal_id))
+        assert channel.words is not None
+        channel.send_only(channel.words, channel.words.type(goal=text, id=goal_id))
         return goal_id
 
     def say(self, text: str) -> str:
         """Have something said that nobody waits for; returns the goal's id."""
         self._said = text
-        return self.send_only(self.peers.speech, topics.SPEECH_GOAL, f"say {text}")
+        return self.send_only(self.peers.speech, f"say {text}")
 
     def stop_all(self) -> None:
         """Tell every peer of an ended mission to stop what it does for it."""
         self.cancel_speech()
-        self.send_only(self.peers.navigation, topics.NAVIGATION_GOAL, "stop")
-        self.send_only(self.peers.manipulation, topics.MANIPULATION_GOAL, "stop")
+        self.send_only(self.peers.navigation, "stop")
+        self.send_only(self.peers.manipulation, "stop")
 
     def cancel_speech(self) -> None:
         """Tell speech to stop listening, if it was asked to."""
         if self.peers.speech.outstanding:
-            self.send_only(self.peers.speech, topics.SPEECH_GOAL, "cancel")
+            self.send_only(self.peers.speech, "cancel")

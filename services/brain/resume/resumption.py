@@ -123,12 +123,9 @@ class Resumption:
     def _call_off(self) -> None:
         """What was under way does not fit the world any more."""
         ctx = self._ctx
-        for channel, topic in (
-            (ctx.peers.navigation, topics.NAVIGATION_GOAL),
-            (ctx.peers.manipulation, topics.MANIPULATION_GOAL),
-        ):
+        for channel in (ctx.peers.navigation, ctx.peers.manipulation):
             if channel.outstanding:
-                ctx.send_only(channel, topic, "stop")
+                ctx.send_only(channel, "stop")
         for channel in ctx.peers.all:
             channel.abandon()
 

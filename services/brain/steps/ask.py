@@ -5,7 +5,6 @@ from collections.abc import Callable
 from py_trees.common import Status
 
 from common import messages as m
-from common import topics
 from common.language import offers
 from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply, answered, corrected, reply
@@ -42,7 +41,7 @@ class AskQuestion(Say):
         ctx = self.ctx
         if ctx.voice.reply is not None:
             if self._asking:
-                ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, "cancel")
+                ctx.send_only(ctx.peers.speech, "cancel")
             return Status.SUCCESS
         if not self._asking:
             if ctx.now < ctx.voice.listen_after:

@@ -18,7 +18,7 @@ class HearSpeech(SendGoal):
         """The words came another way."""
         if self.channel.outstanding:
             self.channel.abandon()
-            self.ctx.send_only(self.channel, topics.SPEECH_GOAL, "cancel")
+            self.ctx.send_only(self.channel, "cancel")
 
     def pause(self) -> None:
         """Speech has failed: it listens again after a pause."""

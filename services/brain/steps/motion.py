@@ -35,8 +35,6 @@ def drive_to(goal_id: str, pose: Pose2, about: m.ObjectRef | None = None) -> tup
 class Move(SendGoal):
     """A goal in words, `text`, to a peer that moves the robot: without an answer in time the peer is told to stop."""
 
-    WORDS: Topic[Any]
-
     def __init__(self, node_id: str, ctx: Context, channel: Channel, text: Text, **more: Any) -> None:
         super().__init__(node_id, ctx, channel, **more)
         self._text = text
@@ -46,7 +44,7 @@ class Move(SendGoal):
 
     def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":
-            self.ctx.send_only(self.channel, self.WORDS, "stop")
+            self.ctx.send_only(self.channel, "stop")
         return super().fail_with(failure)
 
 
@@ -57,8 +55,6 @@ class Navigate(Move):
     `recoveries` counts, only what is missing is made up for by further attempts. Where people are all that is in the
     way it is tried again for `people_patience`: they walk on.
     """
-
-    WORDS = topics.NAVIGATION_GOAL
 
     def __init__(
         self, node_id: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName, place: str = ""
@@ -97,8 +93,6 @@ class Navigate(Move):
 
 class Manipulate(Move):
     """A manipulation goal in words; `about` gives the object it concerns."""
-
-    WORDS = topics.MANIPULATION_GOAL
 
     def __init__(
         self,

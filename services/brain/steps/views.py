@@ -56,7 +56,7 @@ class GoAndLook(SendGoal):
         if over or self._held_up <= ctx.config.view_patience:
             return super().update()
         failed = self._failed(PERSON, f"held up for {self._held_up:.0f} s")
-        ctx.send_only(ctx.peers.navigation, topics.NAVIGATION_GOAL, "stop")
+        ctx.send_only(ctx.peers.navigation, "stop")
         return failed
 
 
