@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from common.geometry import quat_matrix, yaw_quat
-from services.manipulation.arm.arm_model import Array
-from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLOPING, antipodal
+from services.manipulation.arm.arm_model import Array, Pose
+from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLIPPERY, SLOPING, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.pads import LONGEST, PLAY, STEEPEST, contact_at
@@ -147,6 +147,16 @@ def test_straight_walls_are_rather_held_than_a_cone_nearer_to_the_middle() -> No
     best = grasps(of)[0]
     contact = contact_at(surface(of), best.pose)
     assert contact is not None and contact.slope < SLOPING
+
+
+def test_a_rod_is_as_steep_as_at_its_widest_line_and_a_wedge_as_it_is() -> None:
+    """Exam of worlds, bat: its handle falls away under the upper half of the pads."""
+    turns, along, deep = np.linspace(0.0, math.tau, 90), np.linspace(-0.03, 0.03, 30), np.linspace(-0.03, 0.03, 30)
+    rod = np.array([(x, 0.02 * math.cos(t), 0.02 * math.sin(t)) for x in along for t in turns])
+    wedge = np.array([(x, side * (0.03 + 0.4 * z), z) for x in along for z in deep for side in (-1, 1)])
+    low, middle = (contact_at(of, Pose(np.array([0.0, 0.0, -at]), np.eye(3))) for of, at in ((rod, 0.01), (wedge, 0.0)))
+    assert low is not None and low.slope < SLIPPERY
+    assert middle is not None and middle.slope == pytest.approx(0.4, abs=0.05)
 
 
 def test_what_was_seen_is_completed_down_to_what_it_rests_on_and_no_wider() -> None:

@@ -15,7 +15,7 @@ from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.plan_grab import GrabPlan, from_place, plan_grab, same_hold
+from services.manipulation.planning.plan_grab import BESIDE, GrabPlan, from_place, plan_grab, same_hold
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, target_of
 from services.sim.model import own
 
@@ -159,6 +159,8 @@ def test_what_failed_is_not_tried_again_under_the_name_it_has_once_the_thing_was
     again, other = first(moved, [])[1], first(moved, [failed])[1]
     assert failed.on_surface and again.name != failed.name and same_hold(again, failed), "it is called otherwise"
     assert not same_hold(other, failed)
+    apart = float(np.linalg.norm(other.pose.position - failed.pose.position))
+    assert apart > BESIDE, "what slipped out there does so from another side as well"
 
 
 def test_the_arm_goes_home_around_the_table_from_within_what_is_believed_to_stand_there() -> None:

@@ -12,6 +12,7 @@ from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target
 from services.manipulation.grasps.vessel import seen_open
+from services.manipulation.planning.motion_planner import POOR
 from tests.unit.test_manipulation_stances import PLANNER
 
 AT = (0.6, 0.0, 0.8)
@@ -75,12 +76,15 @@ def test_a_handle_before_a_body_does_not_bring_it_nearer(beside: float) -> None:
     assert sides[:, 0].mean() == pytest.approx(0.0, abs=0.005)
 
 
-def test_fingers_close_across_the_view_where_the_far_side_was_not_seen() -> None:
+def test_fingers_close_across_the_view_where_the_far_side_was_not_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     narrow = irregular(front((0.03, 0.02), -0.1, 0.1))
-    found = antipodal(narrow, 0.0, 0.085, 0.0761)
-    along = [abs(float(g.pose.rotation[0, 1])) for g in found]
-    assert max(along) > 0.7, "they could close the other way"
-    assert np.mean(along[:5]) < 0.5
+
+    def along() -> list[float]:
+        return [abs(float(g.pose.rotation[0, 1])) for g in antipodal(narrow, 0.0, 0.085, 0.0761)]
+
+    assert np.mean(along()[:5]) < 0.5
+    monkeypatch.setattr("services.manipulation.grasps.antipodal.GUESSED", 0.0)
+    assert max(along()) > 0.7, "they could close the other way"
 
 
 def test_a_handle_beside_a_body_is_no_part_of_it() -> None:
@@ -125,6 +129,20 @@ def test_a_wide_pot_is_held_by_its_handles_and_one_without_is_too_wide() -> None
     grasps = [grasp for stage in PLANNER.candidates(pot) for grasp in stage]
     assert pot.family == "long" and grasps
     assert all(math.hypot(*(grasp.pose.position - AT)[:2]) > 0.05 and grasp.width < 0.05 for grasp in grasps)
+
+
+@pytest.mark.parametrize(("better", "family"), [(-0.1, "long"), (0.1, "round")])
+def test_what_slides_out_by_its_wall_is_held_by_its_handle(
+    better: float, family: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exam of worlds, teapot: its shoulder was the only place that pads go around, and slopes by 37 degrees."""
+    wall = np.concatenate([front((0.041, 0.041), low, 0.05) for low in (-0.05, -0.045)])
+    handle = np.array([(0.0, 0.06 + 0.01 * math.sin(t), 0.03 * math.cos(t)) for t in np.linspace(0, math.pi, 8)])
+    of = Target("thing", "", AT, 0.0, (0.082, 0.082, 0.1), 0.0, "round", np.concatenate([wall, handle]), 0.003, True)
+    known = PLANNER._on_surface
+    shoulder = replace(antipodal(SPRAY, 0.0, 0.085, 0.0761)[0], worth=POOR + better)
+    monkeypatch.setattr(PLANNER, "_on_surface", lambda t: known(t) if t.family == "long" else [shoulder])
+    assert PLANNER.believed(of).family == family
 
 
 @pytest.mark.parametrize(("kind", "above"), [("ball", False), ("toy", True)])

@@ -6,6 +6,7 @@ approaches that a mobile robot has: from above and from its side, the fingers le
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,9 +34,9 @@ LEVER = 0.08
 by 35 degrees."""
 KEPT, APART, TURNED = 40, 0.012, math.radians(20)
 """How many grasps are proposed, and from where on [m, rad] two of them are different ones."""
-MOST_UPWARD, LAID_DOWN = 0.25, 0.6
+MOST_UPWARD, LAID_DOWN = 0.25, 0.75
 """Sine of the steepest upward approach with which an object can be put down upright, and what it costs when it has to
-be put down as it lies: as much as good contacts are worth."""
+be put down as it lies: more than good contacts are worth."""
 GUESSED = 0.4
 """What a grasp costs whose pads close along the way from the eye where the far side was not seen, as much as two
 thirds of a pad less on the surface: a spray bottle that was taken so was 75 mm deep and not 37."""
@@ -55,9 +56,11 @@ outermost cap, which slips out of the pads."""
 VAGUE = 0.4
 """What it costs to take a part that may be nothing but doubt in its width: what good contacts are worth, less that the
 only part there is is taken still."""
-SLOPING, SLIDES = 0.25, 2.0
-"""Steepest surface, as a tangent, under the pads of a grasp by rule, and what it costs where a surface is steeper by 1:
-fingers slid up a cone of 17 degrees, and what was measured as 23 is as often 30, beyond the cone of friction."""
+SLOPING = 0.25
+"""Steepest surface, as a tangent, under the pads of a grasp by rule: fingers slid up a cone of 17 degrees."""
+SLIPPERY, SLIDES = 0.35, 3.0
+"""Tangent from which a surface costs more, and how much where it is steeper by 1: what was measured as 23 degrees is as
+often 30, which is beyond the cone of friction."""
 ASIDE = 0.008
 """Distance [m] of places across something that is too wide for the hand, of which parts are taken: a quarter of the
 pads' height."""
@@ -151,7 +154,7 @@ def _worth(target: Target, contact: Contact, arm: Array, tilt: int, off: float, 
     vague = max(0.0, 1.0 - contact.width / (2 * (MEASURED + 2 * target.spread))) if part else 0.0
     return (
         min(contact.share, 0.75) - VAGUE * vague - 0.5 * contact.slope - 4.0 * lever
-        - SLIDES * max(0.0, contact.slope - SLOPING) - 0.3 * min(tight, 1.0)
+        - SLIDES * max(0.0, contact.slope - SLIPPERY) - 0.3 * min(tight, 1.0)
         - 0.2 * abs(tilt - preferred) / 90 - 0.15 * abs(off) / (math.pi / 2)
     )  # fmt: skip
 
@@ -159,11 +162,11 @@ def _worth(target: Target, contact: Contact, arm: Array, tilt: int, off: float, 
 def _different(ranked: list[tuple[float, Grasp]]) -> list[Grasp]:
     """The best of those that are alike, at most `KEPT`."""
     kept: list[Grasp] = []
-    for _, grasp in ranked:
+    for worth, grasp in ranked:
         if len(kept) >= KEPT:
             break
         if not any(alike(grasp.pose, other.pose) for other in kept):
-            kept.append(grasp)
+            kept.append(replace(grasp, worth=worth))
     return kept
 
 

@@ -32,7 +32,8 @@ class Grasp:
     `axis`: where the upper end of a lying object points [rad]; None when it stands. `turns_over`: it stands on its
     upper end, and is turned about the hand's approach before it is put down. `rim`: one finger is inside the
     object, `width` is that of its wall; `on_surface`: found on the measured surface and not by the rule of a kind;
-    `over_edge`: one finger is below the object, which has to reach over the edge of its surface.
+    `over_edge`: one finger is below the object, which has to reach over the edge of its surface; `worth`: how good one
+    on the surface is, about 1 for the best.
     """
 
     pose: Pose
@@ -45,6 +46,7 @@ class Grasp:
     on_surface: bool = False
     turns_over: bool = False
     over_edge: bool = False
+    worth: float = 0.0
 
 
 def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:

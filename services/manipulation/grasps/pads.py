@@ -14,6 +14,10 @@ PLAY = 0.003
 """Least distance [m] of open fingers from the object on either side, and of their tips from what it rests on."""
 STEP = 0.02
 """Depth [m] that counts for a part of the surface that lies deeper under the pad: an edge is no place for it."""
+NEAR, LEAST_WEIGHT = 0.008, 0.05
+"""Depth [m] under the pad at which what is across it at one place along the approach counts 1/e for how steep the
+surface is, and what the deepest counts: of a rod that lies the pads touch the widest line, however its upper side falls
+away. Chosen: the deepest of a rod of 25 mm counts a tenth."""
 STEEPEST = 0.45
 """Steepest surface under a pad, as a tangent: 24 degrees, within the cone of friction 0.6 with the error of normals."""
 CELLS = (3, 4)
@@ -133,10 +137,12 @@ def _touched(pad: Array, top: Array, least: tuple[int, ...]) -> tuple[Array, Arr
     filled = np.isfinite(above)
     v, u = np.meshgrid((np.arange(CELLS[1]) - 1.5) * CELL[1], (np.arange(CELLS[0]) - 1.0) * CELL[0])
     basis = np.stack([u, v, np.ones(CELLS)])
-    weight = filled.astype(float)
+    depth = np.where(filled, np.maximum(above, -STEP), 0.0)
+    of_row = np.exp(-((depth.max(axis=2, where=filled, initial=-STEP, keepdims=True) / NEAR) ** 2))
+    weight = np.where(filled, np.maximum(of_row, LEAST_WEIGHT), 0.0)
     # Least squares of a plane through the cells; the ridge leaves directions without cells level.
     normal = np.einsum("nmij,aij,bij->nmab", weight, basis, basis) + np.diag([1e-6, 1e-6, 1e-9])
-    right = np.einsum("nmij,aij->nma", np.where(filled, np.maximum(above, -STEP), 0.0), basis)
+    right = np.einsum("nmij,aij->nma", weight * depth, basis)
     plane = np.linalg.solve(normal, right[..., None])[..., 0]
     known = (filled.any(axis=3).sum(axis=2) >= least[0]) & (filled.any(axis=2).sum(axis=2) >= least[1])
     return share, np.where(known, np.hypot(plane[..., 0], plane[..., 1]), np.inf)

@@ -28,6 +28,10 @@ PLAINLY = 0.012
 what is seen in part."""
 FEWEST = 4
 """Grasps of a completed surface below which there is next to nothing to hold. Chosen: as many as are tried."""
+POOR = 0.0
+"""Worth of a grasp on a surface below which a part, as a handle, is looked for. Chosen: that of pads of which half lies
+on a slope that they just do not slide off.
+"""
 REMEMBERED = 4
 """Targets of which answers are kept: one as measured, as seen, and without what is completed of it, and one more."""
 CARTESIAN_STEP = 0.02
@@ -118,10 +122,10 @@ class Planner:
         return parts if self._on_surface(parts) else found
 
     def _nowhere_held(self, target: Target) -> bool:
-        """Something round that stands, and was seen, goes between the fingers nowhere by its wall."""
+        """Something round that stands, and was seen, is held well nowhere by its wall."""
         if not is_round(target) or min(target.size[:2]) <= self.arm.widest or flat_and_wide(target, self.arm.widest):
             return False
-        return not self._rules(target) and not self._on_surface(target)
+        return not self._rules(target) and all(grasp.worth < POOR for grasp in self._on_surface(target))
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen

@@ -19,6 +19,9 @@ from services.manipulation.planning.motion_planner import PlanError, Planner, co
 from services.manipulation.planning.planning_scene import with_object
 from services.manipulation.planning.straight_grab import Miss, Way, opening_of, straight_parts, with_fingers
 
+BESIDE = 0.02
+"""Distance [m] from where a grasp failed up to which others come last. Chosen: a pad's width."""
+
 
 @dataclass(frozen=True)
 class GrabPlan:
@@ -85,6 +88,7 @@ def plan_grab(
         options += stage
         left = [g for g in stage if not any(same_hold(from_place(g, place), other) for other in skip)]
         left = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
+        left.sort(key=lambda g: any(g.on_surface and _beside(from_place(g, place), other) for other in skip))
         tried += left
         if plan := attempt(left, ways[0]):
             return plan
@@ -109,6 +113,11 @@ def plan_grab(
 def from_place(grasp: Grasp, place: Array) -> Grasp:
     """A grasp relative to where its object is (3,) [m]: it is the same one when that has been moved."""
     return replace(grasp, pose=grasp.pose.moved(-place))
+
+
+def _beside(one: Grasp, other: Grasp) -> bool:
+    """What slipped out at a place of its surface does so from there whichever way the hand comes."""
+    return other.on_surface and float(np.linalg.norm(one.pose.position - other.pose.position)) < BESIDE
 
 
 def same_hold(one: Grasp, other: Grasp) -> bool:
