@@ -6,7 +6,6 @@ import pkgutil
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2
-from common.kinds import kind_of
 from common.runtime import StartError
 from services.perception.calibration_monitor import CalibrationMonitor
 from services.perception.config import PerceptionConfig
@@ -14,8 +13,8 @@ from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
 from services.perception.naming.naming import Naming
 from services.perception.queries import Queries
+from services.perception.tracking.association import refines
 from services.perception.tracking.beliefs import Beliefs
-from services.perception.tracking.track import SURE
 from services.perception.views.pictures import Pictures
 from services.perception.views.self_filter import RobotModel
 from services.perception.views.state_buffer import StateBuffer
@@ -26,9 +25,6 @@ HAND_RANGE = 0.35
 of them."""
 CLEAR = ("", "start", "look")
 """Phases of manipulation in which the arm is retracted."""
-REFINED = 0.05
-"""Most [m] that the wrist camera's sighting may be off the believed position of the object that it refines. Chosen:
-less than the distance to a neighbour."""
 
 
 class PerceptionService:
@@ -132,16 +128,10 @@ class PerceptionService:
     def _trusted(self, view: View, detections: list[Detection]) -> list[Detection]:
         """The detections that may be believed: half hidden by the hand, an object looks like another."""
         if view.camera == "wrist":
-            return [d for d in detections if self._refines(d)]
+            return [d for d in detections if refines(d, self._beliefs.published)]
         if self._phase() not in CLEAR and self._hand_at is not None:
             return [d for d in detections if math.dist(d.position, self._hand_at) > HAND_RANGE]
         return detections
-
-    def _refines(self, d: Detection) -> bool:
-        """True for what the wrist camera may say of an object: where it is more exactly, and of round objects from any
-        part of them."""
-        known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._beliefs.published)
-        return known and (kind_of(d.kind).straight or (d.whole and d.confidence >= SURE))
 
 
 def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from common.kinds import kind_of
+from common.messages import WorldObject
 from services.perception.detection import Detection
 from services.perception.tracking.descriptor import shares
-from services.perception.tracking.track import Track
+from services.perception.tracking.track import SURE, Track, agrees
 from services.perception.views.view import View
 
 SAME = 0.12
@@ -33,6 +35,20 @@ sees that share of its height behind its centre, [m] at least."""
 PUSHED, SAME_SIZE = 0.35, 0.025
 """How far [m] what is missing is looked for, and the largest difference of extents [m]. Chosen: what is pulled over an
 edge moves by 0.2; the error of extents, twice."""
+
+REFINED = 0.05
+"""Most [m] that the wrist camera's sighting may be off the believed position of the object that it refines. Chosen:
+less than the distance to a neighbour."""
+
+
+def refines(d: Detection, believed: Sequence[WorldObject]) -> bool:
+    """Whether the wrist camera may say where an object is more exactly: of round ones by any part of them, and of those
+    that nobody listed by as much as shows their extents."""
+    near = [o for o in believed if math.dist(o.position, d.position) < REFINED and not o.held]
+    if not d.known:
+        return any(o.measured and agrees(o.size, d) for o in near)
+    whole = kind_of(d.kind).straight or (d.whole and d.confidence >= SURE)
+    return whole and any(o.label == d.label for o in near)
 
 
 def separation(d: Detection, track: Track) -> float | None:

@@ -1,7 +1,7 @@
 """What several views of one object say about it together: shape, extents, kinds, colours, points of its surface."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,8 +32,8 @@ LEAST_SHARE = 0.02
 
 @dataclass
 class Descriptor:
-    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map], seen from no
-    farther than about `nearest` [m].
+    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [m] from its middle,
+    seen from no farther than about `nearest` [m].
 
     `opening`: votes for an open end, from whatever side; they do not fade, as it is no more to be seen when the object
     stands on it. `firm`: the last kind that counted as seen.
@@ -51,8 +51,10 @@ class Descriptor:
     firm: str = ""
     nearest: float = math.inf
 
-    def add(self, d: Detection, weight: float, moved: bool) -> None:
-        """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold."""
+    def add(self, d: Detection, weight: float, moved: bool, middle: Vec3) -> None:
+        """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold;
+        `middle` [map]: where the object is in that view, so that views laid one over another do not blur it.
+        """
         old = self.shape
         self.opening += weight * (d.end == "open")
         vote(self.kinds, d.kinds, weight)
@@ -66,7 +68,7 @@ class Descriptor:
             share = self.spread**2 / (self.spread**2 + spread**2)
             self.size = _between(self.size, _aligned(d, self.yaw), share)
             self.spread = max(LEAST_SPREAD, self.spread * math.sqrt(1 - share))
-        self._add_points(d, moved)
+        self._add_points(replace(d, points=d.points - middle), moved)
 
     def set_down(self) -> None:
         """The hand has let go: how it rests, and what shape it shows so, is to be seen anew."""
@@ -113,9 +115,9 @@ class Descriptor:
         self.named = kind, main
         return self.named
 
-    def packed(self, position: Vec3) -> bytes:
+    def packed(self) -> bytes:
         """The points as `WorldObject.points`."""
-        return np.clip(np.round((self.points - position) * 1000), -32768, 32767).astype("<i2").tobytes()
+        return np.clip(np.round(self.points * 1000), -32768, 32767).astype("<i2").tobytes()
 
 
 def shares(votes: dict[str, float]) -> dict[str, float]:

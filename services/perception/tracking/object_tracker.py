@@ -163,5 +163,5 @@ def _as_object(t: Track, label: str) -> WorldObject:
         confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id, tilt=t.tilt, shape=t.looks.shape,
         colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
         kind_shares={} if t.known else shares(t.looks.kinds), colour_shares={} if t.known else shares(t.looks.colours),
-        measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(t.position),
+        measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(),
     )  # fmt: skip

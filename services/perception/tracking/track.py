@@ -27,6 +27,9 @@ TRUST = 4.0
 """Weight of a track's position, in best sightings, beyond which further ones no longer add to it."""
 PARTIAL = 0.1
 """Weight of a sighting of a part, of that of the whole; times the squared share that was seen."""
+AGREES = 0.005
+"""Difference [m] of all extents up to which a part shows where the whole is. Chosen: twice the error of a whole view;
+the wrist camera before a thing, behind its fingers, sees most of it."""
 POORER = 0.5
 """Weight of a sighting, of the best one, from which it may still turn the object, and have it elsewhere though its
 place is not seen to be empty."""
@@ -88,7 +91,8 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
     """Take in a detection of the track's object at robot time `now` [s]; `left`: its place is seen to be empty."""
     d = _turned_over(track, detection)
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
-    weight *= 1.0 if d.whole else PARTIAL * d.share**2
+    shows_middle = d.whole or (track.whole and agrees(track.size, d))
+    weight *= 1.0 if shows_middle else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
     if shift > MOVED and not left and weight < POORER * track.best:
         # Something still stands where a better view has shown it: this one has measured badly.
@@ -117,7 +121,7 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
     track.position, track.on = (x, y, z), d.on
     # Close looks count more, slivers less, and old mistakes fade.
     evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance)) * (1.0 if d.whole else d.share)
-    track.looks.add(d, evidence, fell or shift > MOVED)
+    track.looks.add(d, evidence, fell or shift > MOVED, d.position if shows_middle else track.position)
     guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
     if fell or (share and weight >= POORER * track.best and not guess):
         track.yaw, track.yaw_seen = d.yaw if d.known else track.looks.turned(d), d.yaw_seen
@@ -130,6 +134,12 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
     track.scores[key] = track.scores.get(key, 0.0) + evidence
     if track.name == key and abs(d.tilt - track.tilt) <= FELL:
         track.size, track.tilt = (d.size if d.known else track.looks.size), d.tilt
+
+
+def agrees(size: Vec3, d: Detection) -> bool:
+    """A detection of what nobody listed has the extents of an object, and thus its middle, be a part of it hidden."""
+    extents = zip(sorted(size), sorted(d.size), strict=True)
+    return not d.known and all(abs(was - now) < AGREES for was, now in extents)
 
 
 def _turned_over(track: Track, d: Detection) -> Detection:

@@ -1,8 +1,8 @@
 """What a tuned transformer makes of the candidates of a sentence: intent and slots read together.
 
 As in Chen et al., "BERT for joint intent classification and slot filling", 2019: the form counts by the whole sentence,
-each thing and place by what its words mean in it, and a quotation by its first and last word. `bench/semantic_network.py` tunes
-it.
+each thing and place by what its words mean in it, and a quotation by its first and last word.
+`bench/semantic_network.py` tunes it.
 """
 
 from collections.abc import Mapping, Sequence
