@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import PREPOSITIONS, filled, noun_phrases, replaced, verb_first
+from common.language.exchange import COLOURS, PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS
 from common.language.noun_phrase import WHICH
@@ -23,6 +23,50 @@ _WHICH_ONE = re.compile(r"^(?P<one>(?:the|a|an|my) (?:\w+ ){1,2}one)(?:,? (?:and
 _ANY_ONE = re.compile(
     r"^(?:any|either|whichever|it does not matter which|i do not (?:mind|care))(?: one| (?:one )?will do)?$"
 )
+
+
+_COLOUR = rf"(?:{'|'.join(sorted(COLOURS))})"
+_GOES = r"(?= (?:to|on|onto|in|into|goes|go|for|back)\b)"
+_SHARED = re.compile(
+    r"\b(?:the|both|two|all|my|our|those|these)(?: (?:two|three|both))? (?P<noun>[a-z]+)s(?:,? please)?[,.;] "
+    rf"(?P<rest>(?:the )?{_COLOUR}(?: one)?{_GOES}.+)$"
+)
+_SHARING = re.compile(rf"\b(?:the )?({_COLOUR})(?: one)?{_GOES}")
+"""Several of a kind, and where each of them is to go by its colour alone."""
+_SECOND = re.compile(
+    rf"\b(?P<first>the {_COLOUR} (?P<noun>[a-z]+)),? (?P<and>and|or) (?:the )?(?P<other>{_COLOUR})(?: one)?"
+    r"(?=$|[,.;!?]| (?:to|on|onto|in|into|too|please|as)\b)"
+)
+"""Two of a kind by their colours, the second without its noun."""
+_LABELLED = re.compile(
+    r"^(?:(?:to|into|onto|in|on|for) )?(?:(?:the|my|our) )?(?P<place>\w+(?: \w+){0,2})\s*:\s+"
+    rf"(?P<things>(?:(?:the|my|our|an?|all|both|two|every|{_COLOUR}) [^.;:!?]+|"
+    r"\w+(?= and |[.;!?]|$)[^.;:!?]*))(?P<rest>.*)$",
+    re.IGNORECASE,
+)
+"""Things behind the name of the place where they are to go: `toy box: the red ball`."""
+_RUBBISH = frozenset({"rubbish", "trash", "garbage"})
+
+
+def with_shared_noun(text: str) -> str:
+    """`both mugs, the red to the desk` as `the red mug to the desk`, `the red mug and the blue` as two mugs."""
+    text = _SECOND.sub(r"\g<first> \g<and> the \g<other> \g<noun>", text)
+    if (found := _SHARED.search(text)) is None:
+        return text
+    return _SHARING.sub(rf"the \1 {found['noun']}", found["rest"])
+
+
+def put_where_labelled(text: str, is_place: IsPlace) -> str:
+    """`toy box: the red ball` as `put the red ball in the toy box`."""
+    found = _LABELLED.match(text.strip())
+    place = found["place"].lower() if found else ""
+    names = found is not None and DETERMINERS.isdisjoint(place.split())
+    if found is None or not names or verb_first(without_politeness(found["things"].lower())):
+        return text
+    things = re.sub(r",? please$", "", found["things"])
+    if place in _RUBBISH:
+        return f"throw away {things}{found['rest']}"
+    return f"put {things} on the {place}{found['rest']}" if is_place(tuple(place.split())) else text
 
 
 def apposed(text: str) -> str:

@@ -120,6 +120,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:need|want|would like|would love|could use|could do with|looking for|fancy|after) (?!to\b|you\b){NP}",
          r"i want \1"),
         (rf"(?:i|we) (?:am|are|was|were) looking for {NP}", r"find \1"),
+        (rf"(?:get|take|move) {NP} out of (?:(?:my|our) (?:sight|way|hair|face)|the way)", r"put \1 away"),
         (r"(?:i|we) will (?:take|have) (it|that|this|those|them)(?: (?:off|from|out of) (?:you|your hands?))?",
          r"bring me \1"),
         # Coming with something is bringing it.

@@ -69,6 +69,12 @@ _CONTRACTIONS = tuple(
         (r"\b(what|where|who|how|when|why)'?d (?=i|you|we|they|he|she)", r"\1 did "),
         (r"\b(?:two|too) (?=(?:the|my|our) )", "to "),
         (r"\bin here\b", "here"),
+        (r"\b((?:second|minute|hour|moment)s?)'s? time\b", r"\1 time"),
+        (
+            r"\bwhere you (?:are|stand)(?: standing)?(?: now| at present)? (?:shall be|will be|is)(?: called)?\b",
+            "call this place",
+        ),
+        (r"\b(which one)'s\b", r"\1 is"),
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
         (r"\b(whatever|everything|anything|something|nobody)'?s\b", r"\1 is"),
@@ -76,7 +82,8 @@ _CONTRACTIONS = tuple(
         (r"\b(it|she|he)'s\b", r"\1 is"),
         (r"\b(\w{2,})'s (?=(?:a|an|the|in|on|at|not|so|too|very|coming|going|getting|here|there)\b)", r"\1 is "),
         (
-            rf"(^|[,.;!?] |\b(?:and|so|but|because) )((?:the|my|our|that|this|your|his|her) (?:\w+ ){{0,2}}\w{{2,}})'s "
+            rf"(^|[,.;!?] |\b(?:and|so|but|because) )"
+            r"((?:(?:the|my|our|that|this|your|his|her) (?:\w+ ){0,2})?\w{3,})'s "
             rf"(?=(?:(?:all|a bit|quite|completely|already|just|no|too|totally|getting) )*{_STATE}"
             r"(?:[,.;!?]|$| (?:and|so|now|again|today|but|already|in|on|at|here|there)\b))",
             r"\1\2 is ",
@@ -207,6 +214,9 @@ _SAME = tuple(
             rf"(?<=\bif )there is nothing (?:left )?(?:on|in|at) ((?:the|my|our) \w+(?: (?!then\b|{A_VERB}\b)\w+)?)",
             r"\1 is empty",
         ),
+        (r"\bwhich (?:one )?of (?:the|those|these|my|our) (?:two |three |four )?([a-z]+)s (?=(?:is|stands|lies)\b)",
+         r"which \1 "),
+        (r"\b(?:which|what) (?:one )?is (?:the )?(\w+er)( one)?,? (?=the\b.* or the\b)", r"which is \1 "),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),

@@ -6,6 +6,7 @@ clause asks for is none of it. Pure.
 
 import re
 
+from common.language.apposition import put_where_labelled, with_shared_noun
 from common.language.breaks import with_breaks
 from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
@@ -98,6 +99,7 @@ _NEXT = frozenset(
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
+    text = put_where_labelled(text, is_place)
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
     listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
     whole = without_fillers(as_speech(expand(normalise(listed, ",;.!?"))))
@@ -105,6 +107,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
+    whole = with_shared_noun(whole)
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]

@@ -9,7 +9,8 @@ from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.politeness import without_politeness
 from common.naming.names import ALIKE
 
-_COLOURS = ALIKE.keys() - KINDS.keys()
+COLOURS = ALIKE.keys() - KINDS.keys()
+"""Words for colours that are no things as well."""
 PREPOSITIONS = frozenset({
     "on", "in", "to", "into", "onto", "at", "from", "next", "near", "beside", "under", "behind", "with", "inside",
     "off",
@@ -80,7 +81,7 @@ def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
 
 def filled(phrase: str, other: str) -> str:
     """`the blue one` with the noun of the other phrase, `the red mug`; `the blue` likewise."""
-    if " " in phrase and phrase.split()[-1] in _COLOURS:
+    if " " in phrase and phrase.split()[-1] in COLOURS:
         phrase = f"{phrase} one"
     head = other.split()
     if spans := noun_phrases(head):

@@ -32,7 +32,9 @@ TOLD: tuple[Wording, ...] = (
         f" | (this | that) <thing> (to be | shall be | will be | should be) (called | named | known as) {_THE} <words>"
         f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
         f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"
-        f" | (call | rename) (the | my | our) <spot> {_THE} <words>",
+        f" | (call | rename) (the | my | our) <spot> {_THE} <words>"
+        f" | [i | we] [hereby] (christen | dub | name | declare) (this | that) <thing> {_THE} <words>"
+        f" | let (this | that) <thing> be [known as | called] {_THE} <words>",
     ),
     Wording(
         "forget_rule",
@@ -50,6 +52,7 @@ TOLD: tuple[Wording, ...] = (
         f" <words> {_ON} <spot> [any (more | longer)] | stop (putting | keeping | storing) <words> {_ON} <spot>"
         f" | <words> (do not have to | do not need to | need not | no longer (have to | need to)) {_BELONG} [back]"
         f" ({_ON} | to) <spot> {_AGAIN} | <words> no longer {_BELONG} {_ON} <spot> {_AGAIN}"
+        f" | <words> do not {_BELONG} [back] {_ON} <spot> (any (more | longer) | anymore | now)"
         f" | there is no (fixed | set | special | particular) (place | home | spot) for <words> {_AGAIN}"
         f" | stop (taking | bringing | moving) <words> to <spot> as a rule"
         f" | (no more | no | drop the | cancel the) (rule | rules) (about | for | on) <words>"

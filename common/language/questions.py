@@ -133,8 +133,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording(
         "origin",
-        "(where | which place | what place) (did | do | have) you (get | got | take | taken | find | found | pick |"
-        " fetch | have | had) <thing> [up] [from]"
+        "(where | (which | what) (place | table | shelf | room | surface)) (did | do | have) you"
+        " (get | got | take | taken | find | found | pick | fetch | have | had) <thing> [up] [from]"
         " | where (did | was | were) <thing> (stand | sit | lie | be | come from | standing | lying) [before | "
         "originally]"
         " | where (was | were) <thing> [before | originally] | where does <thing> come from",

@@ -118,7 +118,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "forget",
         "(forget | unlearn) ([about] [the name [of] | what is] (my | our) | the name [of] [the]"
-        " | that (it | this | that | <thing>) is (called | named) [my | our | the]) <words>",
+        " | that (it | this | that | <thing>) is (called | named) [my | our | the]) <words>"
+        " | (stop | quit) (calling | naming) (it | this | that | <thing>) [my | our | the] <words>",
     ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)"),
     Wording(
@@ -191,7 +192,10 @@ WORDINGS: tuple[Wording, ...] = (
         "(come | go | drive | get) [yourself] [on] [over] (here | back [here] [to me])"
         " | (come | go | return | head) [back] [to] where ((i am | we are) [sitting | standing | lying] | you (started"
         " | came from)) | over here | here to me | to me | this way | come | home | back [here | to me | home]"
-        " | return [home | here | to (start | me | base)] | (come | go | drive) [back] home",
+        " | return [home | here | to (start | me | base)] | [go [and]] (park | dock) [up] [yourself] [for now]"
+        " | [off | shoo | (go | get | drive | head | roll) [back] | (go [and] (sit | stand | wait)) | back] (to | in)"
+        " your [own] (spot | corner | place | dock | station | charger | nest | (charging | parking | docking) (station"
+        " | spot | place | bay)) | (come | go | drive) [back] home",
         heard="go home | come (here | back)",
     ),
     Wording("put", f"{PICK} <thing> [up] and ({PUT}) it {BACK} {ON} <spot>"),
