@@ -420,7 +420,7 @@ def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
         case "drop" | "return" | "look":
             return act[0] == name
         case "wait" | "goto" | "grip" | "teach" | "forget" | "place" | "norule":
-            return act[:2] == (name, first)
+            return act[:2] == (name, first.lower())
         case "rule":
             return act == (name, first.removesuffix("s"), second)
         case _:

@@ -30,7 +30,8 @@ _PART = re.compile(
     r")?(?:finally|lastly|last|next),?\s+(?!to\b)|,\s*(?:and )?(?=(?:say|announce)\b)"
 )
 _BEHIND_SPEECH = re.compile(
-    rf",\s*and\s+(?={A_VERB}\b)|,?\s+(?:and\s+)?then\s+(?={A_VERB}\b)"
+    r",\s*(?:and\s+)?(?=(?:wait (?:for )?(?:\w+ ){1,3}(?:second|minute|hour)s?|come (?:right |straight )?back)\b)"
+    rf"|,\s*and\s+(?={A_VERB}\b)|,?\s+(?:and\s+)?then\s+(?={A_VERB}\b)"
     rf"|,?\s+and\s+(?:then\s+)?(?={A_VERB} (?:right |straight )?back\b)"
     r"|,\s*(?=(?:he|she|they) (?:will not|will never|can not|do not|does not|is not|are not|never) \w+)"
 )

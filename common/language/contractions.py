@@ -217,6 +217,11 @@ _SAME = tuple(
         (r"\bwhich (?:one )?of (?:the|those|these|my|our) (?:two |three |four )?([a-z]+)s (?=(?:is|stands|lies)\b)",
          r"which \1 "),
         (r"\b(?:which|what) (?:one )?is (?:the )?(\w+er)( one)?,? (?=the\b.* or the\b)", r"which is \1 "),
+        (
+            r"^(?:list|name|tell me) (?:all|every|each)(?: of)?(?: the| my| our)? ([a-z]+?)s?(?: (?:that )?you know)?"
+            r"(?:,? (?:with|and) (?:its|their) (?:place|location)s?|,? and where (?:it is|they are))?[.!]?$",
+            r"where are all the \1s",
+        ),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),

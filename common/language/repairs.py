@@ -92,6 +92,12 @@ _WILL_DO = re.compile(
     r"(?:will|would) (?:do|be (?:fine|ok|okay|good|enough))$"
 )
 """Something of a kind, and which one is as good as any."""
+_KIND_FIRST = re.compile(
+    r"^(?:m+ )?(?:(?:i|we) (?!(?:do )?not\b)[^,]*|(?:bring|get|fetch|give) (?:me |us )?)\b"
+    r"(?:an?|some|something)(?: \w+)? "
+    r"(?:drink|eat|snack|bite|refreshment|treat)s?, (?P<one>(?:the|my) (?:\w+ ?){1,3}?)(?: please)?$"
+)
+"""What it is wanted for, and which thing that is: `i would love a cold drink, the red can please`."""
 _APPOSED = re.compile(
     r"^(?P<thing>(?:the|my|that) \w+(?: \w+)?), (?:the|my|that) one (?P<which>(?:on|in|at|from|next "
     r"to|near|beside|with) [^,]+),? "
@@ -121,6 +127,8 @@ def settled(text: str, is_place: IsPlace) -> str:
         text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
     if (found := _WILL_DO.match(text)) and verb_first(without_politeness(found["said"])):
         text = replaced(without_politeness(found["said"]), found["one"].strip(), is_place) or text
+    if found := _KIND_FIRST.match(text):
+        text = f"bring me {found['one']}"
     if found := _NOT_THERE.match(text):
         text = found["said"]
     text = refined(_repaired(text, is_place))

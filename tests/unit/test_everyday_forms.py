@@ -73,6 +73,16 @@ from tests.everyday import Sentence, understand, verdict
         ("-", "mugs don't go on the counter any more", "norule(mugs)"),
         ("-", "in five minutes' time go to the kitchen", "wait(300); goto(kitchen)"),
         ("last:bring me the apple", "which table did you get it from?", "answer(kitchen table)"),
+        ("-", "list all the cans and where they are", "answer(living table, counter, dresser)"),
+        # Speech goes on until the next command.
+        (
+            "-",
+            "go to the kitchen, say hello, wait ten seconds and come back",
+            "goto(kitchen); say(hello); wait(10); return()",
+        ),
+        # What for, and which thing that is.
+        ("-", "i'd love a cold drink, the red can please", "fetch(red can)"),
+        ("held:apple", "that goes by the name of Grandma's snack", "teach(Grandma's snack)"),
         # Called off in one part of what is said.
         ("busy:find my keys", "got them! you can call off the search", "stop()"),
         ("busy:bring me the apple", "cancel that! bring me the green can", "replace: fetch(green can)"),

@@ -120,7 +120,7 @@ def _plain(phrase: Phrase) -> bool:
     return (not phrase.sense.every or of_ones) and not phrase.relation
 
 
-def named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
-    """The phrases for known things, and those for places."""
-    found = chunks(words, vocabulary)
+def named(words: Words, vocabulary: Vocabulary, unlisted: bool = False) -> tuple[list[str], list[str]]:
+    """The phrases for known things, or also `unlisted` ones, and those for places."""
+    found = chunks(words, vocabulary, unlisted=unlisted)
     return [c.text for c in found if c.kind == "thing"], [c.text for c in found if c.kind == "spot"]

@@ -58,7 +58,7 @@ def note(words: Words, builder: PlanBuilder) -> None:
         with suppress(Refusal):
             speak_of(builder, referents(builder, (*placed[1].split(), "on", *placed[2].split())))
             return
-    things, spots = named(words, builder.vocabulary)
+    things, spots = named(words, builder.vocabulary, unlisted=builder.vocabulary.new_nouns)
     if things and not (words[:1] == ("there",) and _goes_on(things[-1], words, builder)):
         with suppress(Refusal):
             speak_of(builder, referents(builder, tuple(things[-1].split())))
