@@ -155,13 +155,13 @@ def _control(said: str, words: str) -> Interjection | None:
     now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
-    if _called_off_in_part(words):
-        return Interjection("cancel", said)
     first, _, reason = words.partition(", ")
     if asks_for(words.rpartition(", ")[2], "stop"):
         return Interjection("stop", said)
     if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
+    if _called_off_in_part(words):
+        return Interjection("cancel", said)
     return Interjection("stop", said) if _ONE_MOMENT.match(words) else None
 
 
