@@ -10,6 +10,7 @@ from common.language.speeches import LONG_SPEECH, TO_BE_SAID
 
 _FILLER = re.compile(
     r"\s*\b(?:u+m+|(?<!^uh )u+h+(?!,? huh\b| uh$)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
+    r"|\b(?:u+r*gh+|e+w+|yu+ck|yikes|phew|blimey|crikey|gosh)\b[,!]*"
     r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it)|"
     r"what do you call (?:it|them|that|those))"
     r"(?:,? (?:again|now|then|so|well|oh|ah|yes|yeah|ok|okay|right|no)\b)+,?|\blet me think,? (?=the|a|my)"

@@ -34,7 +34,7 @@ _STATE = (
     "ready|old|stale|sour|mouldy|moldy|burnt|cracked|dusty|sticky|greasy|smelly|heavy|loose|stuck|lost|gone|missing|"
     "open|closed|hungry|thirsty|tired|asleep|awake|ill|sick|sad|bored|hurt|crying|sleeping|leaking|dripping|ringing|"
     "rubbish|trash|garbage|fragile|precious|dangerous|sharp|late|early|out|away|spare|useless|torn|ripped|worn|"
-    "chipped|clean|great|lovely|nice|fine|too \\w+)"
+    "chipped|clean|great|lovely|nice|fine|over|up|coming|starting|too \\w+)"
 )
 """How something or somebody is, behind a short `is`: `the soup's cold`; other words there are things that it has."""
 _CONTRACTIONS = tuple(

@@ -16,6 +16,7 @@ from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.politeness import without_politeness
+from common.language.preamble import with_preamble
 from common.language.repairs import settled
 from common.language.speeches import LONG_SPEECH, as_speech
 from common.language.timing import in_time
@@ -101,8 +102,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
     text = put_where_labelled(text, is_place)
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
-    listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
-    whole = without_fillers(as_speech(expand(normalise(listed, ",;.!?"))))
+    told = with_preamble(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:")), is_place)
+    whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):

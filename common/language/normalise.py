@@ -24,12 +24,16 @@ _PAST = {
 """Irregular past forms of the verbs of commands."""
 
 
+_DOUBLE = re.compile(r"\b(the|my|our|an?|that|this|his|her|your) ([a-z]{2,})-\2\b")
+"""The name of a yo-yo, which is no word that somebody who hesitates says twice."""
+
+
 @lru_cache(REMEMBERED)
 def normalise(text: str, keep: str = "") -> str:
     """Lower-case words separated by single spaces; accents and punctuation go, except the marks in `keep`."""
     plain = re.sub("&+", " and ", text.lower().replace("’", "'").replace("_", " "))
     folded = unicodedata.normalize("NFKD", plain)
-    letters = "".join(c for c in folded if not unicodedata.combining(c))
+    letters = _DOUBLE.sub(r"\1 \2\2", "".join(c for c in folded if not unicodedata.combining(c)))
     return " ".join(re.sub(rf"[^\w'{re.escape(keep)}]+", " ", letters).split())
 
 

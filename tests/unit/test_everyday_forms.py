@@ -29,6 +29,18 @@ from tests.everyday import Sentence, understand, verdict
         ("-", "stand the red can next to the yellow bowl", "put(red can, counter near yellow bowl)"),
         # What has been handed over needs no further coming.
         ("-", "bottle, the green one, over to me", "fetch(green bottle)"),
+        ("-", "the red mug sits on the coffee table, bring it through would you", "fetch(red mug)"),
+        ("-", "the apple lives on the counter, pop it back there please", "put(apple, counter)"),
+        ("-", "my brother fancies a go with the red ball on the bookshelf, fetch it over", "fetch(red ball)"),
+        (
+            "-",
+            "we're having supper at the kitchen table, so take the yellow bowl over there",
+            "put(yellow bowl, kitchen table)",
+        ),
+        ("-", "playtime's over, the red ball goes in the toy box", "put(red ball, toy box)"),
+        ("-", "the doctor is on her way: my vitamin box, please", "fetch(orange box)"),
+        ("-", "bring me the green can that looks like a barrel", "fetch(green can)"),
+        ("-", "ugh, that apple has gone all soft, bin it", "put(apple, bin)"),
         # Where to look for what was not found.
         ("failed:find my keys", "perhaps they fell behind something. check the bedroom", "goto(bedroom); find(keys)"),
         # Taken over from the hand, in whatever words; what the hand holds.

@@ -1,0 +1,73 @@
+"""What is told before a request and names what it is about: `the mug lives on the shelf, put it back there`. Pure."""
+
+import re
+
+from common.language.exchange import IsPlace, verb_first
+from common.language.normalise import DETERMINERS
+from common.language.politeness import without_politeness
+
+_THING = r"(?:the|that|this|my|our|your|his|her) (?:[\w']+ ){0,4}?[\w']+"
+_STATES = (
+    "lives?|sits?|stands?|belongs?|stays?|hangs?|goes|(?:is|are|was|were|has been)(?: usually| normally| always)? "
+    "(?:kept|stored|left|lying|sitting|standing)"
+)
+_KEPT = re.compile(
+    rf"^(?:\w+, )?(?P<thing>{_THING}) (?:usually |normally |always |really )?(?:{_STATES})\b(?P<where>[^,.;!?]*)[,.;!] "
+    r"(?:so |and |but )?(?P<request>[^.;!?]+)[.!]?$"
+)
+"""Where something has its place, and what is asked for of it."""
+_WISHED = re.compile(
+    r"^(?:\w+, )?(?:my |our |the |your )?\w+ (?:wants|would (?:like|love)|needs|fancies|is (?:after|asking for)|"
+    r"(?:has )?asked for|has been asking for) (?:(?:(?:a|another) (?:quick )?(?:look|go|try|peek) (?:at|with|of)|"
+    r"to (?:see|look at|read|use|try|borrow|have|hold|show \w+|play with)) )?"
+    rf"(?P<thing>{_THING}(?: (?:on|in|from|at|off) (?:the|my|our) \w+(?: \w+)?)?)(?P<where>)[,.;!] "
+    r"(?:so |and )?(?P<request>[^.;!?]+)[.!]?$"
+)
+"""What somebody else would like to have or see, and what is asked for of it."""
+_BROUGHT = re.compile(
+    r"^(?:please )?(?:bring|fetch|get|carry) (?:it|them)(?: back)?"
+    r"(?: (?:through|over|along|across|down|up|here|in|to me))*$"
+)
+_HANDLED = re.compile(r"^(?:just |please |then )*[a-z]+ (?:it|them)\b")
+"""A request that begins with a verb, be it unknown, and what it points at."""
+_POINTS = re.compile(r"(?<=\w )(?:it|them)\b")
+_BACK_THERE = re.compile(r"\b(?:back )?(?:(?:in|on|at|to) )?(?:over )?t?here\b")
+_AT = re.compile(
+    r"^(?:\w+, )?(?:i|we|she|he|they|my \w+|the \w+) (?:am|are|is|will be) (?!not\b)[^,.;!?]*?\b(?:at|on|in|by) "
+    r"(?P<place>(?:the|my|our) \w+(?: \w+)?)[,.;!] (?:so |and )?(?P<request>[^.;!?]*?)(?:,? please)?[.!]?$"
+)
+"""Where somebody is, and what is asked for to be there."""
+_ALIKE = re.compile(
+    r"\b(?P<head>[\w']+),? (?:that|which|who) (?:looks?|is shaped|is painted|is made to look)"
+    r"(?: (?:a bit|a little|just|sort of|kind of|rather))? like (?P<other>(?:an?|the|some) \w+)"
+)
+_ANYTHING = frozenset({"thing", "one", "something", "object", "item"})
+_NEEDED = re.compile(r"^(?P<why>[\w' ]{3,}): (?P<thing>(?:(?:the|my|our|an?|some) )?[\w']+(?: [\w']+)?),? please[.!]*$")
+"""Why, and the thing that is wanted: `the doctor is coming: stethoscope, please`."""
+
+
+def with_preamble(text: str, is_place: IsPlace) -> str:
+    """The request with the names that were told before it; texts without such stay."""
+    text = _ALIKE.sub(lambda found: _named(found["head"], found["other"]), text)
+    for pattern in (_KEPT, _WISHED):
+        told = pattern.match(text)
+        asked = without_politeness(told["request"]) if told else ""
+        if told and (verb_first(asked) or _HANDLED.match(asked)):
+            if _BROUGHT.match(asked):
+                return f"bring me {told['thing']}"
+            where = told["where"].strip()
+            request = _BACK_THERE.sub(where, asked, count=1) if where else asked
+            if _POINTS.search(request):
+                return _POINTS.sub(told["thing"], request, count=1)
+    if (at := _AT.match(text)) and verb_first(without_politeness(at["request"])):
+        known = is_place(tuple(w for w in at["place"].split() if w not in DETERMINERS))
+        if known and _BACK_THERE.search(at["request"]):
+            return _BACK_THERE.sub(f"to {at['place']}", at["request"], count=1)
+    if (needed := _NEEDED.match(text)) and not verb_first(needed["why"]) and not is_place(tuple(needed["why"].split())):
+        return f"bring me {needed['thing']}"
+    return text
+
+
+def _named(head: str, other: str) -> str:
+    """What is said to look like something has a name of its own, or that one's."""
+    return other.split()[-1] if head in _ANYTHING else head
