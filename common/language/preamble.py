@@ -1,4 +1,4 @@
-"""What is told before a request and names what it is about: `the mug lives on the shelf, put it back there`. Pure."""
+"""What is told around a request: what it is about (`the mug lives on the shelf, put it back there`), and how. Pure."""
 
 import re
 
@@ -37,6 +37,16 @@ _AT = re.compile(
     r"(?P<place>(?:the|my|our) \w+(?: \w+)?)[,.;!] (?:so |and )?(?P<request>[^.;!?]*?)(?:,? please)?[.!]?$"
 )
 """Where somebody is, and what is asked for to be there."""
+_MANNER = re.compile(
+    r"[,.;!]+ (?:and |but )?(?:(?:very |ever so )?(?:gently|carefully|slowly|quietly|quickly|softly)|careful(?: now)?|"
+    r"(?:mind|watch) (?:the|your|my|our|out for the) \w+|watch out|easy does it|chop chop)(?:,? please)?[.!]*$"
+)
+"""How, said by itself behind a request."""
+_AND_NOT = re.compile(r"(?<=\w) (?:and|but) not (?=(?:the|my|our) \w+(?:$|[,.;!]))")
+"""What something is set against: `in the bin and not the recycling`."""
+_TAKEN_THERE = re.compile(
+    r"\b(?:take|carry|move|transfer) (?P<thing>(?:the|my|our|that|this) [^,.;!?]+?) (?P<there>(?:over |back )?there)\b"
+)
 _ALIKE = re.compile(
     r"\b(?P<head>[\w']+),? (?:that|which|who) (?:looks?|is shaped|is painted|is made to look)"
     r"(?: (?:a bit|a little|just|sort of|kind of|rather))? like (?P<other>(?:an?|the|some) \w+)"
@@ -48,6 +58,7 @@ _NEEDED = re.compile(r"^(?P<why>[\w' ]{3,}): (?P<thing>(?:(?:the|my|our|an?|some
 
 def with_preamble(text: str, is_place: IsPlace) -> str:
     """The request with the names that were told before it; texts without such stay."""
+    text = _TAKEN_THERE.sub(r"put \g<thing> \g<there>", _AND_NOT.sub(", not ", _MANNER.sub("", text)))
     text = _ALIKE.sub(lambda found: _named(found["head"], found["other"]), text)
     for pattern in (_KEPT, _WISHED):
         told = pattern.match(text)

@@ -90,7 +90,9 @@ class PlanBuilder:
             self.steps.pop()  # "get out of the kitchen and go to the study"
         self.spot, self.leaving = spot, False
         self.moved = True
-        self.steps.append(PlanStep(action="return") if spot.home else PlanStep(action="navigate", target=spot.name))
+        step = PlanStep(action="return") if spot.home else PlanStep(action="navigate", target=spot.name)
+        if self.steps[-1:] != [step]:  # "go to your corner, dock"
+            self.steps.append(step)
 
     def approach(self, item: BelievedObject) -> None:
         """Find an object and drive up to it."""

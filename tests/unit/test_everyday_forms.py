@@ -40,6 +40,10 @@ from tests.everyday import Sentence, understand, verdict
         ("-", "playtime's over, the red ball goes in the toy box", "put(red ball, toy box)"),
         ("-", "the doctor is on her way: my vitamin box, please", "fetch(orange box)"),
         ("-", "bring me the green can that looks like a barrel", "fetch(green can)"),
+        ("-", "put the apple on the desk and not the counter", "put(apple, desk)"),
+        ("held:red mug", "dresser. carefully.", "put(red mug, dresser)"),
+        ("-", "go to your corner then, dock", "return()"),
+        ("busy:bring me the apple", "don't! leave the apple!", "stop()"),
         ("-", "ugh, that apple has gone all soft, bin it", "put(apple, bin)"),
         # Where to look for what was not found.
         ("failed:find my keys", "perhaps they fell behind something. check the bedroom", "goto(bedroom); find(keys)"),
@@ -104,3 +108,8 @@ def test_the_form_is_understood(context: str, said: str, right: str) -> None:
     sentence = Sentence(context, said, right)
     found = understand(sentence)
     assert verdict(sentence, found) == "right", found
+
+
+def test_a_place_that_is_only_pointed_at_is_asked_about() -> None:
+    found = understand(Sentence("-", "the visitors are here, take the red mug over there", "put(red mug, desk)"))
+    assert not found.steps and "which place" in found.reason

@@ -109,6 +109,10 @@ class Interjection(msgspec.Struct, frozen=True):
     text: str
 
 
+_LEFT = re.compile(r"^(?:just |please )?leave (?:it|that|them|the|my|this)\b[^,]*$")
+"""What is to stay where it is, behind a word that stops: `don't! leave the apple`."""
+
+
 def interjection(said: str, doing: str = "") -> Interjection:
     """What a sentence means to a mission under way: by its wording, or as it is most likely meant.
 
@@ -158,7 +162,7 @@ def _control(said: str, words: str) -> Interjection | None:
     first, _, reason = words.partition(", ")
     if asks_for(words.rpartition(", ")[2], "stop"):
         return Interjection("stop", said)
-    if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
+    if (_is_news(reason) or _LEFT.match(reason)) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
     if _called_off_in_part(words):
         return Interjection("cancel", said)

@@ -11,6 +11,9 @@ from services.planner.reference.places import spot
 from services.planner.reference.pronouns import speak_of
 from services.planner.reference.resolve import referents
 
+_ASKING = frozenset({"what", "how", "who", "which", "again"})
+"""Words of a question for a name: `the box is called what, again?`."""
+
 
 def remark(builder: PlanBuilder, slots: Slots) -> None:
     """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
@@ -73,11 +76,12 @@ def _name(builder: PlanBuilder, slots: Slots) -> str:
     """The name as it is to be kept.
 
     Raises:
-        Refusal: it is a place, or a word that says how a thing is ("the ball is my favourite").
+        Refusal: it is a place, a word that says how a thing is ("the ball is my favourite"), or one that asks.
     """
     words = without_determiners(slots["words"])
     if len(words) > LONGEST_NAME:
         raise Lost(f"{' '.join(words)} is too long a name")
-    if not words or builder.vocabulary.spot(words) or set(words) <= set(builder.world.household.words.qualities):
+    no_name = _ASKING | set(builder.world.household.words.qualities)
+    if not words or builder.vocabulary.spot(words) or set(words) <= no_name:
         raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
     return " ".join(words)
