@@ -12,8 +12,8 @@ _STATES = (
     "(?:kept|stored|left|lying|sitting|standing)"
 )
 _KEPT = re.compile(
-    rf"^(?:\w+, )?(?P<thing>{_THING}) (?:usually |normally |always |really )?(?:{_STATES})\b(?P<where>[^,.;!?]*)[,.;!] "
-    r"(?:so |and |but )?(?P<request>[^.;!?]+)[.!]?$"
+    rf"^(?:\w+, )?(?P<thing>{_THING}) (?:usually |normally |always |really )?(?:{_STATES})\b(?P<where>[^,.;!?]*?)"
+    r"(?:[,.;!] (?:so |and |but )?| so )(?P<request>[^.;!?]+)[.!]?$"
 )
 """Where something has its place, and what is asked for of it."""
 _WISHED = re.compile(

@@ -45,7 +45,8 @@ def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | N
     size = wanted.size if wanted is not None and min(wanted.size) > 0 else USUAL_SIZE
     label, kind = (wanted.label, wanted.kind) if wanted is not None else ("object", "")
     rotation = planner.arm.pose(joints).rotation
-    return GraspedObject(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
+    offset = np.array([0.0, 0.0, size[2] / 2])
+    return GraspedObject(label or "object", kind, rotation, offset, size, width, 0.0, guessed=True)
 
 
 def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Leg]:

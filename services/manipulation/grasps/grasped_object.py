@@ -38,7 +38,8 @@ class GraspedObject:
     `rotation` (3, 3) of the hand and `offset` (3,) [m] of the pinch point are relative to the centre of the object's
     underside, in a frame with upright z in which the object is turned by `yaw` [rad].
 
-    `part`: only a part of it is between the pads, and a finger may be within what else it has.
+    `part`: only a part of it is between the pads, and a finger may be within what else it has. `guessed`: how it is
+    turned in the hand is not known.
 
     What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for
     where that cannot be.
@@ -53,6 +54,7 @@ class GraspedObject:
     yaw: float
     as_found: "GraspedObject | None" = None
     part: bool = False
+    guessed: bool = False
 
     @property
     def from_below(self) -> bool:
@@ -83,11 +85,13 @@ class GraspedObject:
         return self.width + PLAY if self.entangled else None
 
     def box(self) -> tuple[Array, Array, Array]:
-        """Half extents (3,) [m] of the object's collision box along its own axes, its centre (3,) and rotation (3, 3)
-        in the frame of the pinch point."""
+        """Half extents (3,) [m] of the object's collision box along its own axes, or the hand's where those are only
+        guessed, its centre (3,) and rotation (3, 3) in the frame of the pinch point."""
         center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
-        half = np.maximum(np.array(self.size) / 2 - SHRINK, LEAST_HALF)
-        return half, center, self.rotation.T @ yaw_matrix(self.yaw)
+        half, turned = np.array(self.size) / 2, self.rotation.T @ yaw_matrix(self.yaw)
+        if self.guessed:
+            half, turned = np.abs(turned) @ half, np.eye(3)
+        return np.maximum(half - SHRINK, LEAST_HALF), center, turned
 
 
 def lying_rotation(axis: float) -> Array:
