@@ -178,7 +178,8 @@ def test_search_and_alternative_path(here: Site) -> None:
         again = peer.stance(attempt=2, id=first["id"])
         peer.moved(again, "failed", code="BLOCKED")
         peer.speech("say I could not reach the red mug.")
-        assert "ERROR" in peer.system and "SUCCESS" not in peer.system
+        eventually(lambda: "ERROR" in peer.system, "it says that it failed")
+        assert "SUCCESS" not in peer.system
 
 
 def test_speech_that_fails_is_asked_again_after_five_seconds(here: Site) -> None:
