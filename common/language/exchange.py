@@ -58,7 +58,12 @@ def with_thing(meant: str, said: list[str]) -> str:
     """`put it there` with the first thing of the words that were said before in place of its "it"."""
     spans = noun_phrases(said)
     thing = " ".join(said[slice(*spans[0])]).strip(",") if spans else ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, meant, count=1) if thing else meant
+    return named(meant, thing) if thing else meant
+
+
+def named(text: str, thing: str) -> str:
+    """A request with the name of a thing in place of its first "it"."""
+    return re.sub(r"(?<=\w )(?:it|them)\b", thing, text, count=1)
 
 
 _AFTER_NOUN = PREPOSITIONS | {"and", "that", "which", "here", "there"}

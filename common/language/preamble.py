@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import IsPlace, verb_first
+from common.language.exchange import IsPlace, named, verb_first
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -30,7 +30,6 @@ _BROUGHT = re.compile(
 )
 _HANDLED = re.compile(r"^(?:just |please |then )*[a-z]+ (?:it|them)\b")
 """A request that begins with a verb, be it unknown, and what it points at."""
-_POINTS = re.compile(r"(?<=\w )(?:it|them)\b")
 _BACK_THERE = re.compile(r"\b(?:back )?(?:(?:in|on|at|to) )?(?:over )?t?here\b")
 _AT = re.compile(
     r"^(?:\w+, )?(?:i|we|she|he|they|my \w+|the \w+) (?:am|are|is|will be) (?!not\b)[^,.;!?]*?\b(?:at|on|in|by) "
@@ -68,8 +67,8 @@ def with_preamble(text: str, is_place: IsPlace) -> str:
                 return f"bring me {told['thing']}"
             where = told["where"].strip()
             request = _BACK_THERE.sub(where, asked, count=1) if where else asked
-            if _POINTS.search(request):
-                return _POINTS.sub(told["thing"], request, count=1)
+            if (whole := named(request, told["thing"])) != request:
+                return whole
     if (at := _AT.match(text)) and verb_first(without_politeness(at["request"])):
         known = is_place(tuple(w for w in at["place"].split() if w not in DETERMINERS))
         if known and _BACK_THERE.search(at["request"]):

@@ -1,7 +1,7 @@
 """What several views of one object say about it together: shape, extents, kinds, colours, points of its surface."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -68,20 +68,20 @@ class Descriptor:
             share = self.spread**2 / (self.spread**2 + spread**2)
             self.size = _between(self.size, _aligned(d, self.yaw), share)
             self.spread = max(LEAST_SPREAD, self.spread * math.sqrt(1 - share))
-        self._add_points(replace(d, points=d.points - middle), moved)
+        self._add_points(d, d.points - middle, moved)
 
     def set_down(self) -> None:
         """The hand has let go: how it rests, and what shape it shows so, is to be seen anew."""
         self.shapes, self.spread = {}, 0.0
 
-    def _add_points(self, d: Detection, moved: bool) -> None:
+    def _add_points(self, d: Detection, points: Array, moved: bool) -> None:
         """Views of like noise are merged; what was seen from much farther blurs what was seen from near."""
-        if not len(d.points):
+        if not len(points):
             return
         if moved or not len(self.points) or (d.whole and d.distance < self.nearest / BLURRED):
-            self.points, self.nearest = d.points, d.distance
+            self.points, self.nearest = points, d.distance
         elif d.distance < self.nearest * BLURRED:
-            self.points, self.nearest = _merged(self.points, d.points), min(self.nearest, d.distance)
+            self.points, self.nearest = _merged(self.points, points), min(self.nearest, d.distance)
 
     def turned(self, d: Detection) -> float:
         """The yaw [rad] of a detection, by which its extents are in the order of `size`."""
