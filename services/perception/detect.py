@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from common.floor_plan import Vec3
-from common.geometry import Array
+from common.geometry import Array, Mask
 from common.household import Household
 from common.kinds import kind_of
 from common.thing import Thing
@@ -23,7 +23,7 @@ from services.perception.segments.segment import Segment
 from services.perception.shapes import known as shapes
 from services.perception.shapes import known_toppled as toppled
 from services.perception.views import colour
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
 """Standard deviations of a fit's mean distance [m], of the height [m], and of the colour's difference (`colour`)."""

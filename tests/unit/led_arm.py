@@ -5,8 +5,9 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.geometry import Array
 from common.household import load_household
-from services.manipulation.arm.arm_model import ArmModel, Array
+from services.manipulation.arm.arm_model import ArmModel
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.service import ManipulationService
 from services.sim.model import own

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from common.geometry import quat_matrix, yaw_quat
-from services.manipulation.arm.arm_model import Array, Pose
+from common.geometry import Array, quat_matrix, yaw_quat
+from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLIPPERY, SLOPING, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.evidence import as_held, believed, explained, seen_between
 from services.manipulation.grasps.grasp import Grasp

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.surface import surface

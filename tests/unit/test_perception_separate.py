@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from common.geometry import Array
+from common.geometry import Array, Mask
 from services.perception.segments.joints import jointed
 from services.perception.segments.seams import unseamed
 from services.perception.segments.segment import Segment, Surface
 from services.perception.segments.separate import pieces
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 SIDE = 200
 """Of the picture [px]."""

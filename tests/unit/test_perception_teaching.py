@@ -10,6 +10,7 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.geometry import Mask
 from common.household import Household, load_household
 from services.perception.config import PerceptionConfig
 from services.perception.detect import Detection
@@ -17,7 +18,7 @@ from services.perception.naming.naming import HALF_READ
 from services.perception.naming.naming import RESEMBLES as LAST
 from services.perception.naming.reader import installed
 from services.perception.service import PerceptionService
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 from tests.node import Node
 from tests.unit.painted import Box, label, view_of_boxes
 

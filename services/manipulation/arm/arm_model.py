@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.geometry import Array
 from common.robot.joints import ARM
 from common.robot.model import Hand, arm_forward, arm_limits, home_arm
 
-Array = NDArray[np.float64]
 BOXES = 24
 """Obstacles that the model has places for [count], the nearest first; chosen."""
 FAR = 50.0

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 
 OTHER_SIDE = math.radians(30)
 """Angle between two approaches, or two closing directions, from which they are different sides of an object [rad]:

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 import mink
 import numpy as np
 
+from common.geometry import Array
 from common.robot.joints import ARM
-from services.manipulation.arm.arm_model import ArmModel, Array, Pose
+from services.manipulation.arm.arm_model import ArmModel, Pose
 
 ITERATIONS = 60
 """Most steps from one start [count]; chosen."""

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel, Obstacle
 
 COLLISION, OUTSIDE = "COLLISION", "OUTSIDE"
 CLEARANCE = 0.003

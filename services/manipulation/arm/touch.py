@@ -6,7 +6,8 @@ from typing import Any, Literal, Protocol
 import mujoco
 import numpy as np
 
-from services.manipulation.arm.arm_model import ArmModel, Array
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel
 
 TOUCHED = "TOUCHED"
 TOO_HEAVY = "TOO_HEAVY"

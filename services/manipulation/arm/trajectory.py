@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import ArmModel, Array
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel
 
 STEP = 0.06
 """Largest change of a joint [rad] between two collision checks on a line. Chosen: 5 cm at the end of the stretched

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.arm.touch import BLOCKED, Guard
 from services.manipulation.execution.robot import DT, Failure, Robot, Steps
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from common.geometry import quat_matrix, yaw_quat
+from common.geometry import Array, quat_matrix, yaw_quat
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import Contact, came_around
 from services.manipulation.execution.robot import Failure, Robot, planner_of
 from services.manipulation.grasps.clearance import PAD

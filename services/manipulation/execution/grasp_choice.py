@@ -4,9 +4,10 @@ from collections.abc import Collection
 
 import numpy as np
 
+from common.geometry import Array
 from common.kinds import kind_of
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target

@@ -6,8 +6,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.geometry import Array
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.touch import BLOCKED, HIT, TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.arm.trajectory import back_along, parallel, whole
 from services.manipulation.execution.closing import close

@@ -8,7 +8,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Job
 from common.gateway import refusal
-from services.manipulation.arm.arm_model import ArmModel, Array
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel
 from services.manipulation.arm.servo import Servo
 from services.manipulation.execution.feedback import LOADING
 from services.manipulation.execution.robot import DT, Robot

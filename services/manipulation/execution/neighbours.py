@@ -7,8 +7,8 @@ from itertools import combinations
 from msgspec import structs
 
 from common import messages as m
+from common.geometry import Array
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.execution.grasp_executor import grab
 from services.manipulation.execution.place_executor import free_spots, place, place_back
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of

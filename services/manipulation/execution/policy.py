@@ -8,7 +8,7 @@ import numpy as np
 
 from common import messages as m
 from common.demonstration import ACTION, PICTURE_SIZE, STATE
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 
 Observation = dict[str, Any]
 Policy = Callable[[Observation], Any]

@@ -8,7 +8,8 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.demonstration import PictureTurns
-from services.manipulation.arm.arm_model import ArmModel, Array
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel
 from services.manipulation.arm.servo import Servo
 from services.manipulation.arm.touch import TOUCHED
 from services.manipulation.execution.policy import (

@@ -5,10 +5,9 @@ from msgspec import structs
 
 from common import messages as m
 from common.floor_plan import Receptacle
-from common.geometry import Pose2, compose, yaw_quat
+from common.geometry import Array, Pose2, compose, yaw_quat
 from common.household import Household
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.touch import TOUCHED
 from services.manipulation.execution.grasp_executor import TOO_WIDE
 from services.manipulation.execution.neighbours import grab_with_room, reference

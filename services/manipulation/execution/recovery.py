@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from common.geometry import Array
 from common.messages import ObjectRef
-from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import BLOCKED
 from services.manipulation.arm.trajectory import Leg
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.arm.touch import Reaction
 from services.manipulation.arm.trajectory import back_along, parallel
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of

@@ -8,10 +8,9 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.robot.grip import Grip
 from services.manipulation.arm import touch
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import ContactLog
 from services.manipulation.arm.servo import Servo
 from services.manipulation.arm.touch import BLOCKED, HIT, MET, TOO_HEAVY, Compliance, Guard, Watch, Way

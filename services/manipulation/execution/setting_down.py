@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.arm.touch import TOUCHED, Guard
 from services.manipulation.execution.robot import Failure, Robot, Steps
 

@@ -10,8 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from common.geometry import Array
 from common.kinds import kind_of
-from services.manipulation.arm.arm_model import Array, Pose
+from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.grasp import Grasp, approach_rotation, on_handle, upper_end
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import PART

@@ -6,9 +6,9 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from common.geometry import quat_matrix
+from common.geometry import Array, quat_matrix
 from common.robot.model import Hand, pads, subtree
-from services.manipulation.arm.arm_model import STAND_IN, ArmModel, Array, Obstacle, Pose
+from services.manipulation.arm.arm_model import STAND_IN, ArmModel, Obstacle, Pose
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, cKDTree
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.grasps.antipodal import LEAST_SHARE, SLOPING
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import CERTAIN, Grasp

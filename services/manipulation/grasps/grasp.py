@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 
 from common import messages as m
-from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
+from common.geometry import Array, Pose2, matrix_quat, quat_matrix, yaw_quat
 from common.kinds import KINDS, Kind, kind_of
-from services.manipulation.arm.arm_model import Array, Pose
+from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.target import Target
 
 HANDLE_CONE = math.radians(50)

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import yaw_matrix
+from common.geometry import Array, yaw_matrix
 from common.kinds import kind_of
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
 

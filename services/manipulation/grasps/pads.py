@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array, Pose
+from common.geometry import Array
+from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.clearance import FLAT, PAD, PAD_HALF
 
 FINGER_HALF = 0.0135

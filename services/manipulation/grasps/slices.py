@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 
 BAND, LEVELS = 0.010, 3
 """Height [m] of a slice, two rows of the points that are told, and at how many heights of it points lie. Chosen: half a

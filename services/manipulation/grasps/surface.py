@@ -7,8 +7,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from common.geometry import yaw_matrix
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array, yaw_matrix
 from services.manipulation.grasps.slices import slices
 from services.manipulation.grasps.target import Target
 

@@ -3,9 +3,10 @@
 import math
 from dataclasses import dataclass, field
 
+from common.geometry import Array
 from common.kinds import Shape, kind_of
 from common.messages.perception import ShapeFamily
-from services.manipulation.arm.arm_model import Array, Obstacle, Solid
+from services.manipulation.arm.arm_model import Obstacle, Solid
 
 LYING_FROM = 0.7
 """Tilt [rad] from which, and up to which before upside down, an object lies on its side."""

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array
 from services.manipulation.grasps.surface import away, own_points, profile
 from services.manipulation.grasps.target import Target
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array, Obstacle
+from common.geometry import Array
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import Planner

@@ -7,8 +7,9 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from common.geometry import Array
 from common.kinds import kind_of
-from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle, Pose
+from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.arm.ik import InverseKinematics
 from services.manipulation.arm.touch import Reaction
 from services.manipulation.arm.trajectory import Leg, connect, legs

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import Pose2, Rectangle
-from services.manipulation.arm.arm_model import Array, Obstacle, Pose
+from common.geometry import Array, Pose2, Rectangle
+from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.clearance import PAD, PAD_HALF

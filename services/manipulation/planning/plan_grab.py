@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from services.manipulation.arm.arm_model import Array, Obstacle
+from common.geometry import Array
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.contacts import new_sides_first
 from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.antipodal import alike

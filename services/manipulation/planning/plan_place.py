@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import yaw_matrix
-from services.manipulation.arm.arm_model import Array, Obstacle, Pose
+from common.geometry import Array, yaw_matrix
+from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.grasped_object import GraspedObject

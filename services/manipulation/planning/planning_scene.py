@@ -7,10 +7,10 @@ from itertools import product
 import numpy as np
 
 from common.floor_plan import FloorPlan, Receptacle
-from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, to_frame, yaw_quat
+from common.geometry import Array, Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, to_frame, yaw_quat
 from common.kinds import laid_on_a_side
 from common.messages import ObjectRef, WorldObject
-from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.grasps.target import Target
 
 RANGE = 1.4

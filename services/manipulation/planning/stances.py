@@ -10,10 +10,9 @@ from msgspec import structs
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.floor_plan import Receptacle
 from common.furniture_tops import support_at
-from common.geometry import SIDES, Pose2, compose, inverse
+from common.geometry import SIDES, Array, Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.plan_grab import plan_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of

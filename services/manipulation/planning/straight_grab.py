@@ -6,8 +6,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from common.geometry import Array
 from common.robot.model import Hand
-from services.manipulation.arm.arm_model import Array, Obstacle, Pose
+from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.floor_plan import Receptacle
-from common.geometry import Pose2, compose, inverse
-from services.manipulation.arm.arm_model import Array
+from common.geometry import Array, Pose2, compose, inverse
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array, quat_matrix
+from common.geometry import Array, Mask, quat_matrix
 from common.messages import Vec3, WorldObject
 from services.perception.naming.sides import Lens
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 MARGIN = 0.012
 """How far [m] beyond an object's measured box its pixels are taken. Chosen: the error of its position."""

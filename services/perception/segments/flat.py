@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from common.geometry import Mask
 from services.perception.segments.dark import DARK, Pixels
 from services.perception.segments.segment import RIM
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 OTHER, DARKER = 0.12, 0.3
 """Differences from the surface around, of chromaticity and of brightness by that, from which a pixel is of another

@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_plan import DRIVEN_OVER
-from common.geometry import Array
-from services.perception.views.view import Mask
+from common.geometry import Array, Mask
 from services.perception.views.visible_plan import Cloud
 
 SEARCH = 0.025

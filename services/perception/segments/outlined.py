@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.geometry import Array
+from common.geometry import Array, Mask
 from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels
 from services.perception.segments.segment import NEARER, RIM, Segment, Surface
 from services.perception.shapes import silhouette
 from services.perception.shapes.measurement import Measurement
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 from services.perception.views.visible_plan import Cloud
 
 BELOW = 3

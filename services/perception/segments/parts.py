@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.geometry import Array
+from common.geometry import Array, Mask
 from services.perception.segments.air import ATTACHED, gap, hangs
 from services.perception.segments.alike import BRIDGED, one_in_picture
 from services.perception.segments.dark import Blobs, Pixels, guessed
 from services.perception.segments.segment import Segment, Surface, covered
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 JUMP, JUMP_PER_METRE = 0.022, 0.012
 """Step of depth [m] between neighbouring pixels that separates two objects, and what is added per metre [m/m], as depth

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from common.geometry import Mask
 from services.perception.shapes.measurement import Measurement
-from services.perception.views.view import Mask, View, Window
+from services.perception.views.view import View, Window
 
 DEPTH_NOISE = 0.0015
 """Standard deviation [m] of depth at 1 m, growing with the square of the distance (stereo cameras' data sheets)."""

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.floor_plan import FloorPlan, Receptacle
-from common.geometry import Array, Rectangle
+from common.geometry import Array, Mask, Rectangle
 from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.flat import patches
 from services.perception.segments.floor import SEARCH, layers
 from services.perception.segments.outlined import is_part, on_surface, with_parts
 from services.perception.segments.parts import JUMP, between_jumps, joined
 from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
-from services.perception.views.view import Mask, View, Window
+from services.perception.views.view import View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
 
 CLEARANCE, THIN = 0.008, 0.003

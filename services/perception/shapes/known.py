@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common.floor_plan import Vec3
+from common.geometry import Array
 from common.kinds import Kind
 from services.perception.shapes.least_squares import solve
 
-Array = NDArray[np.float64]
 Ends = tuple[bool, bool]
 SAMPLE = 160
 """Points of a segment that are used, evenly spread. Chosen: more only takes longer."""

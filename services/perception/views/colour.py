@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from common.geometry import Array
+
 WORDS = ("red", "orange", "yellow", "green", "blue", "purple", "pink", "brown", "black", "grey", "white")
 """Names of colours; `pixel_words` counts by their place here."""
 _HUES = ((0.035, 0), (0.115, 1), (0.19, 2), (0.45, 3), (0.70, 4), (0.80, 5), (0.93, 6), (1.01, 0))

@@ -7,9 +7,9 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from common.body_extent import corners
-from common.geometry import Array, Pose2
+from common.geometry import Array, Mask, Pose2
 from common.robot.model import RobotKinematics
-from services.perception.views.view import Mask, View
+from services.perception.views.view import View
 
 STEP = 4
 """Every so many rows and columns of a picture are tested; the gaps are filled [pixels]."""

@@ -12,7 +12,6 @@ from common.messages import Rgbd
 from common.robot.pictures import colours, depths
 from services.perception.views import colour
 
-Mask = NDArray[np.bool_]
 # Rows and columns
 Window = tuple[slice, slice]
 NEAR = 0.05
