@@ -1,6 +1,9 @@
 """Configuration: TOML files, environment and `--set`, checked against frozen structs before anything starts."""
 
+import ast
 import contextlib
+import inspect
+import itertools
 import os
 import re
 import tomllib
@@ -28,18 +31,20 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
 
 
 class RuntimeConfig(Config, frozen=True):
-    """Parameters that every process shares (section `runtime`).
-
-    `world` is what the simulation builds, `household` what the robot is told of it: files, or names of shipped ones.
-    `scene` is one file for both, where they are not given: everything in it is told.
-    """
+    """Parameters that every process shares (section `runtime`)."""
 
     scene: str = "apartment"
+    """World and household in one file, or the name of a shipped one: everything in it is told to the robot."""
     world: str = ""
+    """What the simulation builds: a file, or the name of a shipped one; "" for `scene`."""
     household: str = ""
+    """What the robot is told of it, likewise."""
     seed: int = 0
+    """Seed of everything that is drawn by lot."""
     lockstep: bool = False
+    """Robot time stands still until every participant has answered."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
+    """The least that is logged."""
 
     @property
     def world_file(self) -> str:
@@ -59,6 +64,23 @@ class RuntimeConfig(Config, frozen=True):
                 "runtime.scene takes one file as both"
             )
         return self.household or self.scene
+
+
+def described(kind: type[Config]) -> dict[str, tuple[Any, str]]:
+    """key -> (default, what it is), in the order of the class; what it is stands below each field as a string."""
+    body = ast.parse(inspect.getsource(kind)).body[0]
+    assert isinstance(body, ast.ClassDef)
+    said = {
+        field.target.id: " ".join(below.value.value.split())
+        for field, below in itertools.pairwise(body.body)
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+        if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) and isinstance(below.value.value, str)
+    }
+    fields = msgspec.structs.fields(kind)
+    return {
+        f.name: (f.default_factory() if callable(f.default_factory) else f.default, said.get(f.name, ""))
+        for f in fields
+    }
 
 
 def parse_value(text: str) -> Any:

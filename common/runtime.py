@@ -3,9 +3,8 @@
 import argparse
 import os
 import sys
+import textwrap
 from functools import partial
-
-import msgspec
 
 from common import config
 from common.bus.port import Outside
@@ -15,6 +14,9 @@ from common.process.host import BAD_CONFIGURATION, StopSignal, die_with_parent
 from common.process.service_process import Process, ServiceClass
 from common.scene import SceneError, load_scene
 from common.time.clock import SimClock, WallClock
+
+TERMINAL = 100
+"""[columns] of the help; chosen: what today's terminals have at least."""
 
 
 def main(kind: ServiceClass) -> None:
@@ -70,11 +72,7 @@ def _run(process: Process, clock: SimClock | WallClock) -> None:
 
 
 def _arguments(kind: ServiceClass) -> argparse.Namespace:
-    fields = "\n".join(
-        f"  {kind.NAME}.{f.name} = {f.default!r}"
-        for f in msgspec.structs.fields(kind.CONFIG)
-        if f.default is not msgspec.NODEFAULT
-    )
+    fields = "\n".join(_explained(kind.NAME, key, *rest) for key, rest in config.described(kind.CONFIG).items())
     parser = argparse.ArgumentParser(
         prog=f"python -m services.{kind.NAME}",
         description=(kind.__doc__ or "").strip(),
@@ -84,3 +82,8 @@ def _arguments(kind: ServiceClass) -> argparse.Namespace:
     )
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     return parser.parse_args()
+
+
+def _explained(section: str, key: str, default: object, meaning: str) -> str:
+    indented = textwrap.indent(textwrap.fill(meaning, width=TERMINAL - 6), " " * 6)
+    return f"  {section}.{key} = {default!r}\n{indented}"

@@ -24,7 +24,10 @@ DISTANCE = Topic(key="odometer/distance", type=Distance, writers=("odometer",), 
 
 
 class OdometerConfig(Config, frozen=True):
-    report_every: float = 0.1  # [m]
+    """How often it reports."""
+
+    report_every: float = 0.1
+    """Way between two reports [m]."""
 
 
 class OdometerService:

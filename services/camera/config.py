@@ -6,16 +6,17 @@ from common.config import Config
 
 
 class CameraConfig(Config, frozen=True):
-    """`backend` auto takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise.
-
-    `sensors`: `bought`, with the noise and the gaps of a stereo depth camera (see sensor.py), or `ideal`.
-    `max_width`, `max_height`: as fine per angle as the colour imager of the D435 at 1920 x 1080 (69 degrees across).
-    `calibration`: the file of `tidybot calibrate` for this robot; without one the cameras are where their drawing says.
-    """
+    """What takes the pictures, how true to life, and how fine."""
 
     backend: Literal["auto", "egl", "osmesa", "raycast"] = "auto"
+    """`auto` takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise."""
     sensors: Literal["bought", "ideal"] = "bought"
+    """`bought`: with the noise and the gaps of a stereo depth camera (see sensor.py); or `ideal`."""
     calibration: str = ""
+    """File of `tidybot calibrate` for this robot; "": the cameras are where their drawing says."""
     max_width: int = 1920
+    """Columns of the finest picture [pixels]; as fine per angle as the D435's colour imager, 69 degrees across."""
     max_height: int = 1440
+    """Rows of the finest picture [pixels]."""
     render_seconds: float = 0.1
+    """What a picture takes in lockstep [s]."""

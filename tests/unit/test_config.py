@@ -53,3 +53,17 @@ def test_what_cannot_be_used_names_source_and_key(
 ) -> None:
     with pytest.raises(config.ConfigError, match=expected):
         load(tmp_path, text, environ, *([setting] if setting else []))
+
+
+class Described(config.Config, frozen=True):
+    """Two parameters."""
+
+    speed: float = 0.5
+    """Largest
+    speed [m/s]."""
+    names: dict[str, str] = {}
+    """Said -> meant."""
+
+
+def test_parameters_are_told_with_what_they_are() -> None:
+    assert config.described(Described) == {"speed": (0.5, "Largest speed [m/s]."), "names": ({}, "Said -> meant.")}
