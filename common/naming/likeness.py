@@ -40,8 +40,8 @@ NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
 """Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
 the shape of none. Chosen: rarely right."""
 BLANK, BLANK_SPREAD = 0.06, 0.03
-"""Likeness of anything without print to a name that says nothing of looks, and how much more it is of what has the
-shape of no kind: who means a can says so. Chosen: asked about after all else."""
+"""Likeness of anything to a name that says nothing of looks, and how much more it is of what has the shape of no kind:
+who means a can says so. Chosen: asked about after all else."""
 FLAVOURS = frozenset({"apple", "orange", "lemon", "banana"})
 """Kinds that say what is in a pack when they stand before another word, and that go by no other word than their own."""
 MOSTLY = 0.5
@@ -81,9 +81,11 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     named, printed = known.rest & told.looks.keys(), other_goods(wanted, o.text, household)
     # The last word says what it is, those before it which one: a tape measure is no tape.
     before = named if _told_looks(wanted, household) else set()
-    if known.rest - set(told.qualities) and not known.any and not before:
-        return _unnamed(o)
     untold = known.rest - {*told.qualities, *told.looks, *told.shades}
+    # And an untold one may make another thing of it: a magnifying glass is no glass.
+    another = bool(untold and before) and fit < ROUGHLY and _shaped(o) < MOSTLY
+    if not known.any and (another or (known.rest - set(told.qualities) and not before)):
+        return 0.0 if printed else _unnamed(o)
     headed = _known(wanted.split()[-1], o, household).any
     if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and printed and not named):
         return 0.0
@@ -97,8 +99,8 @@ def other_goods(phrase: str, text: str, household: Household) -> list[str]:
     """The words of a text that say of a pack that something else is in it than a phrase says; no brands."""
     wanted, told = set(normalise(phrase).split()), household.words
     goods = {*told.looks, *FLAVOURS}
-    found = [w for w in telling(text) if {w, w.removesuffix("s"), f"{w}s"} & goods]
-    return [w for w in found if not {w, w.removesuffix("s"), f"{w}s"} & wanted]
+    forms = [(w, {w, w.removesuffix("s"), f"{w}s"}) for w in telling(text)]
+    return [w for w, same in forms if same & goods and not same & wanted]
 
 
 def _of_another_flavour(wanted: str, o: WorldObject, household: Household) -> bool:
@@ -110,9 +112,9 @@ def _of_another_flavour(wanted: str, o: WorldObject, household: Household) -> bo
 
 
 def _unnamed(o: WorldObject) -> float:
-    """How well an object fits a name that says nothing of looks: 0 for what has print, or is a fruit."""
+    """How well an object fits a name that says nothing of looks: 0 for what is a fruit."""
     fruit = sum(share for kind, share in _shares(o).items() if kind in FLAVOURS)
-    return 0.0 if telling(o.text) or fruit >= MOSTLY else BLANK + BLANK_SPREAD * (1.0 - _shaped(o))
+    return 0.0 if fruit >= MOSTLY else BLANK + BLANK_SPREAD * (1.0 - _shaped(o))
 
 
 def _shaped(o: WorldObject) -> float:
@@ -172,20 +174,29 @@ class _Words(NamedTuple):
 
 def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
     words = own_words(wanted, household)
-    kinds, shades = words & set(KINDS), words & set(ALIKE)
+    kinds, shades, called = words & set(KINDS), words & set(ALIKE), {*normalise(o.label).split()}
     # "The orange can": what may be a colour is one before another word; alone it is what is meant.
     head = own_words(wanted.split()[-1] if wanted else "", household)
     both = kinds & shades
     # And a fruit before another word is what that is made of, or smells of.
     kinds -= (both | FLAVOURS) - head
     shades -= both & head
+    made_for = _made_for(wanted, household) if not head & called else set()
+    kinds -= made_for
     others = words - kinds - shades
-    label = others & set(normalise(o.label).split())
+    label = others & called - made_for
     rest, told = others - label, household.words
     # Hand cream is no colour, nor is that of cream cheese.
     edible = set() if head & {*KINDS, *ANYTHING} or not head else told.looks.keys()
     between = tuple(told.shades[w] for w in sorted(rest - edible) if w in told.shades)
     return _Words(kinds, shades, label, rest, between)
+
+
+def _made_for(wanted: str, household: Household) -> set[str]:
+    """The kind right before a last word that is none, which says what that is for: a can opener is no can."""
+    *_, kind, head = ["", "", *wanted.split()]
+    plain = not head.isalpha() or own_words(head, household) <= {*KINDS, *ALIKE, *household.words.shades}
+    return set() if plain else own_words(kind, household) & (KINDS.keys() - SHAPELESS)
 
 
 def _fit(words: _Words, o: WorldObject) -> float:

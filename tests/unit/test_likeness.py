@@ -121,7 +121,7 @@ def test_what_has_other_words_on_it_is_not_asked_about() -> None:
     assert 0.0 < partly("soup", tin, HOUSEHOLD) < LIKELY < partly("old can", tin, HOUSEHOLD)
 
 
-def test_a_name_that_says_nothing_of_looks_may_be_any_pack_without_print() -> None:
+def test_a_name_that_says_nothing_of_looks_may_be_any_pack_but_one_of_other_goods() -> None:
     plain = measured("white can", {"can": 1.0}, {"white": 1.0})
     odd = measured("white thing", {"thing": 0.5, "bottle": 0.5}, {"white": 1.0})
     assert (
@@ -131,6 +131,8 @@ def test_a_name_that_says_nothing_of_looks_may_be_any_pack_without_print() -> No
         < partly("old can", plain, HOUSEHOLD)
     )
     assert partly("gizmo", APPLE, HOUSEHOLD) == 0.0, "an apple goes by its kind"
+    plain.text = "BLUES C"
+    assert partly("gizmo", plain, HOUSEHOLD) >= LEAST, "a brand says nothing of what it is"
     plain.text = "CORN"
     assert partly("gizmo", plain, HOUSEHOLD) == 0.0, "it says what it is"
 
@@ -238,6 +240,16 @@ def test_what_has_nothing_of_the_colour_of_what_it_is_made_of_is_asked_about_lat
     red, black = (measured(f"{c} bottle", {"bottle": 1.0}, {c: 1.0}) for c in ("red", "black"))
     assert partly("tomato sauce", red, HOUSEHOLD) > LIKELY > partly("tomato sauce", black, HOUSEHOLD) > LEAST
     assert partly("bbq sauce", black, HOUSEHOLD) == partly("tomato sauce", red, HOUSEHOLD)
+
+
+@pytest.mark.parametrize("phrase", ["magnifying glass", "bottle opener", "can opener", "mug tree", "coffee maker"])
+def test_a_word_before_the_last_may_make_it_another_thing(phrase: str) -> None:
+    odd = measured("yellow banana", {"banana": 0.4, "tool": 0.32, "toy": 0.28}, {"yellow": 1.0})
+    named = [k for k in ("can", "bottle", "mug") if k in phrase]
+    for_it = [measured(f"white {kind}", {kind: 1.0}, {"white": 1.0}) for kind in named]
+    assert partly(phrase, odd, HOUSEHOLD) >= LEAST
+    assert all(likeness(phrase, o, HOUSEHOLD) == 0.0 for o in for_it)
+    assert all(partly(phrase, o, HOUSEHOLD) < partly(phrase, odd, HOUSEHOLD) for o in for_it)
 
 
 def test_a_thing_of_no_shape_may_be_what_is_told_to_look_like_a_mug() -> None:
