@@ -15,11 +15,10 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
 
 from bench import log_linear
+from bench.labelled import Labelled
 from common.plan_rules import known_world
-from services.planner.grammar.chunks import Chunk
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic import ranker
 from services.planner.semantic.forms import FORMS, NONE, OTHER, Candidate, Deed, candidates, tokens
@@ -38,21 +37,6 @@ from tests.everyday import (
     understand,
     verdict,
 )
-
-
-class Labelled(NamedTuple):
-    """A sentence of a list with its candidates; `right`: those that are planned as it means (n,).
-
-    `situation`: words for what is held or was done before.
-    """
-
-    list: str
-    words: tuple[str, ...]
-    found: list[Chunk]
-    meant: list[Candidate]
-    right: list[bool]
-    situation: tuple[str, ...]
-
 
 _DEEDS: dict[str, set[Deed]] = {
     "fetch": {"bring"}, "put": {"put"}, "tidy": {"put"}, "rule": {"put"}, "take": {"take"}, "drop": {"put", "fingers"},

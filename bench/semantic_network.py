@@ -10,7 +10,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from bench.semantic import Labelled
+from bench.labelled import Labelled
 from common.language.transformer import HEADS, LAYERS, PARTS, SIZE, Adapter, transformer
 from services.planner.semantic.network import Network, Read, read, slots
 
