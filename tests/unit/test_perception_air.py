@@ -1,6 +1,7 @@
 """What hangs in the air is a part of what carries it, whatever its colour."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -19,11 +20,13 @@ FLOOR, FOCAL, SIDE = 0.72, 400.0, 240
 EYE = np.array([0.0, 0.0, 1.35])
 Block = tuple[tuple[float, float, float], tuple[float, float, float], tuple[int, int, int]]
 """Lowest and highest corner [m], the height over the floor, and the colour of a block."""
+Ball = tuple[tuple[float, float, float], float, tuple[int, int, int]]
+"""Where a ball touches the table, its radius [m], and its colour."""
 RED, GREEN = (190, 30, 30), (30, 150, 50)
 
 
-def picture(blocks: list[Block]) -> tuple[View, list[Array]]:
-    """Blocks on a table, cast by rays with the noise of a bought camera, and the pixels of each as a mask."""
+def picture(blocks: list[Block], balls: Sequence[Ball] = ()) -> tuple[View, list[Array]]:
+    """Blocks and balls on a table, cast by rays with the noise of a bought camera, and the pixels of each as a mask."""
     pitch = 0.6
     ahead, right = np.array([math.cos(pitch), 0.0, -math.sin(pitch)]), np.array([0.0, -1.0, 0.0])
     rotation = np.stack([right, np.cross(ahead, right), ahead], axis=1)
@@ -37,9 +40,16 @@ def picture(blocks: list[Block]) -> tuple[View, list[Array]]:
         enters, leaves = np.minimum(first, second).max(axis=-1), np.maximum(first, second).min(axis=-1)
         hit = (enters < leaves) & (enters < depth)
         depth[hit], rgb[hit], owner[hit] = enters[hit], colour, n
+    for n, (at, radius, colour) in enumerate(balls, start=len(blocks)):
+        to = np.add(at, (0.0, 0.0, FLOOR + radius)) - EYE
+        square, along = (rays**2).sum(axis=-1), rays @ to
+        with np.errstate(invalid="ignore"):
+            near = (along - np.sqrt(along**2 - square * (to @ to - radius**2))) / square
+        hit = near < depth
+        depth[hit], rgb[hit], owner[hit] = near[hit], colour, n
     depth *= 1 + np.random.default_rng(1).normal(0.0, 0.0015, depth.shape)
     view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (SIDE / 2, SIDE / 2), EYE, rotation)
-    return view, [owner == n for n in range(len(blocks))]
+    return view, [owner == n for n in range(len(blocks) + len(balls))]
 
 
 BODY: Block = ((0.95, -0.03, 0.0), (1.01, 0.03, 0.09), RED)
@@ -65,12 +75,32 @@ def test_a_spout_of_another_colour_is_no_object(other: Block, count: int) -> Non
     assert len(pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))) == count
 
 
+def test_a_ball_behind_a_block_is_told_apart_though_one_looks_under_it() -> None:
+    view, (block, ball) = picture([((0.92, -0.03, 0.0), (0.98, 0.03, 0.059), RED)], [((1.02, 0.04, 0.0), 0.035, GREEN)])
+    assert hangs(view, view.points[ball].astype(np.float64), FLOOR)
+    rows, columns = np.nonzero(block | ball)
+    points = view.points[rows, columns].astype(np.float64)
+    found = pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))
+    assert {p.shape.family for p in found} == {"box", "ball"}
+
+
 def test_what_stands_on_another_part_is_no_object() -> None:
     candle: Block = ((0.97, -0.01, 0.06), (0.99, 0.01, 0.16), GREEN)
     view, masks = picture([((0.94, -0.04, 0.0), (1.02, 0.04, 0.06), RED), candle])
     rows, columns = np.nonzero(np.logical_or(*masks))
     points = view.points[rows, columns].astype(np.float64)
     assert len(pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))) == 1
+
+
+def test_what_is_in_the_corner_of_others_does_not_stand_on_them() -> None:
+    corner: list[Block] = [((0.92, -0.09, 0.0), (0.97, 0.005, 0.06), RED), ((0.96, 0.0, 0.0), (1.1, 0.06, 0.07), RED)]
+    view, masks = picture([*corner, ((0.99, -0.06, 0.0), (1.035, -0.012, 0.14), GREEN)])
+    rows, columns = np.nonzero(np.logical_or.reduce(masks))
+    points = view.points[rows, columns].astype(np.float64)
+    found = pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))
+    assert [p.shape.family for p in found if view.rgb[p.segment.rows[0], p.segment.columns[0]][1] == GREEN[1]] == [
+        "box"
+    ]
 
 
 def test_a_spout_is_told_apart_from_the_body_where_the_shape_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Rectangle
+from common.geometry import Point, Rectangle
 from services.perception.segments.air import hangs
 from services.perception.segments.colours import IN_A_CROWD, LEAST_SHARE, by_colour
 from services.perception.segments.joints import jointed
@@ -38,6 +38,9 @@ HIGH = 0.03
 """Height [m] over the surface from which a piece begins that stands on another one. Chosen: a brick's."""
 OVER = 0.01
 """How far [m] beyond another's shape, whose far side is hidden, the middle of a piece may be that stands on it."""
+LOWEST, EQUATOR = 0.05, 0.4
+"""Quantile of the heights that counts as the lowest, and its height, by that of a ball, up to which the ball is seen to
+below its equator: it lies on the surface, whatever stands before the rest."""
 VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND, BRIDGE = 0.006, 0.01
@@ -91,14 +94,14 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     ):
         if cut is None or (cut := jointed(view, segment, cut, noise)) is None:
             continue
-        cuts = _cut(view, segment, cut)
-        hanging = np.isin(cut, [n for n, s in enumerate(cuts) if hangs(view, s.points, s.surface.height)])
+        cuts = [Piece(s, measured(view, s)) for s in _cut(view, segment, cut)]
+        hanging = np.isin(cut, [n for n, piece in enumerate(cuts) if _hangs(view, piece, noise)])
         if hanging.any():
             # It is no object by itself, and no part of the body: a handle, a spout.
             beside = Piece(segment, measured(view, segment, hanging))
             whole = beside if beside.shape.residual < whole.shape.residual else whole
             continue
-        parts = _level_joined(view, segment, cut, [Piece(s, measured(view, s)) for s in cuts])
+        parts = _level_joined(view, segment, cut, cuts)
         if len(parts) < 2 or any(_stands_on(p, parts) for p in parts):
             continue
         share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
@@ -121,6 +124,13 @@ def _level_joined(view: View, segment: Segment, cut: NDArray[np.intp], parts: li
     return [Piece(s, measured(view, s)) for s in _cut(view, segment, joint)]
 
 
+def _hangs(view: View, piece: Piece, noise: float) -> bool:
+    """A piece hangs in the air, and is no ball on the surface, under which one looks as it curves in."""
+    low = quantile(piece.segment.points[:, 2], LOWEST) - piece.segment.surface.height
+    rests = piece.shape.family == "ball" and _explained(piece, noise) and low < EQUATOR * piece.shape.size[2]
+    return not rests and hangs(view, piece.segment.points, piece.segment.surface.height)
+
+
 def _explained(piece: Piece, noise: float) -> bool:
     return piece.shape.family != "irregular" and piece.shape.residual < FINE + FINE_NOISE * noise
 
@@ -130,11 +140,19 @@ def _stands_on(piece: Piece, parts: list[Piece]) -> bool:
 
     What is behind another one shows no more of its lower part, but is not over its shape.
     """
-    if quantile(piece.segment.points[:, 2], 0.05) - piece.segment.surface.height < HIGH:
+    if quantile(piece.segment.points[:, 2], LOWEST) - piece.segment.surface.height < HIGH:
         return False
-    shapes = (p.shape for p in parts if p is not piece)
-    outlines = (Rectangle(s.x, s.y, s.size[0], s.size[1], s.yaw) for s in shapes)
-    return any(outline.contains(piece.shape.x, piece.shape.y, OVER) for outline in outlines)
+    middle = piece.shape.x, piece.shape.y
+    return any(_holds(p, middle, sum(piece.shape.size[:2]) / 4) for p in parts if p is not piece)
+
+
+def _holds(piece: Piece, middle: Point, radius: float) -> bool:
+    """A place on the floor plan is over a piece; of one without a shape there are points within `radius` [m] of it."""
+    s = piece.shape
+    if not Rectangle(s.x, s.y, s.size[0], s.size[1], s.yaw).contains(*middle, OVER):
+        return False
+    near = np.hypot(*(piece.segment.points[:, :2] - middle).T) < radius
+    return s.family != "irregular" or np.count_nonzero(near) >= MIN_PIXELS
 
 
 def _mostly(whole: Piece, parts: list[Piece]) -> bool:
