@@ -72,8 +72,8 @@ class WorldObjects(Message):
 class ObjectQuery(Message):
     """`since` [s]: only what a picture taken at that robot time or later shows counts, and the picture is wanted.
 
-    `meant`: id of the object that the person said is meant, as long as it is there; `excluded`: ids of objects that the
-    person said are not.
+    `meant`: id of the object that is meant as long as it is there, since the person said so or it was found for these
+    words before; `excluded`: ids of objects that the person said are not.
     """
 
     id: str

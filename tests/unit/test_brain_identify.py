@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import msgspec
 import pytest
 
 from common import messages as m
@@ -161,6 +162,20 @@ def test_what_looked_right_from_afar_has_to_do_so_from_near(kinds: dict[str, flo
     bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
     bench.until(lambda: bench.count(topics.MANIPULATION_GOAL) or bench.count(QUERY) > 1)
     assert bool(bench.count(topics.MANIPULATION_GOAL)) == grabbed
+
+
+@pytest.mark.parametrize(("label", "meant"), [("red mug", "object-3"), ("red can", "")])
+def test_what_was_found_once_is_found_again_though_it_fits_less_plainly_now(label: str, meant: str) -> None:
+    bench = planned()
+    answer(bench, 1, label="red mug", id="object-3", position=GREEN)
+    goal = bench.next_goal(topics.NAV_GOAL, 1)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[looking({"mug": 0.8, "can": 0.2})]))
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    grab = bench.next_goal(topics.MANIPULATION_GOAL, 1)
+    seen = msgspec.structs.replace(looking({"can": 0.7, "mug": 0.3}), label=label, kind=label.split()[1])
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[seen]))
+    bench.did(grab, "failed", "UNREACHABLE")
+    assert answer(bench, 2).meant == meant
 
 
 @pytest.mark.parametrize("word", ["yes", "no"])

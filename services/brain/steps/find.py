@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.kinds import kind_of
 from common.language.normalise import indefinite
-from common.naming.likeness import describes
+from common.naming.likeness import PLAIN, describes, likeness
 from common.naming.names import normalise
 from common.topic import Topic
 from services.brain.mission.channel import Result
@@ -32,12 +32,21 @@ class LocateObject(SendGoal):
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         search, item = self.ctx.mission.search, self._item
+        query = search.chosen.get(item, item)
         return topics.OBJECT_QUERY, m.ObjectQuery(
             id=goal_id,
-            query=search.chosen.get(item, item),
-            meant=search.confirmed.get(item, ""),
+            query=query,
+            meant=search.confirmed.get(item, "") or self._found_before(query),
             excluded=search.rejected,
         )
+
+    def _found_before(self, query: str) -> str:
+        """Id of what was found for the words once, has the same label still and fits them less plainly now: half hidden
+        by the hand or its neighbours, an object looks like another."""
+        ctx, found = self.ctx, self.ctx.mission.search.found.get(self._item)
+        known = next((o for o in ctx.objects if found and o.id == found.id and o.label == found.label), None)
+        fits = 0.0 if known is None else likeness(query, known, ctx.io.household)
+        return found.id if found and 0.0 < fits < PLAIN and found.id not in ctx.mission.search.rejected else ""
 
     def step(self) -> str:
         return f"look for {self._item}"

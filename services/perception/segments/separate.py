@@ -152,7 +152,7 @@ def _holds(piece: Piece, middle: Point, radius: float) -> bool:
     if not Rectangle(s.x, s.y, s.size[0], s.size[1], s.yaw).contains(*middle, OVER):
         return False
     near = np.hypot(*(piece.segment.points[:, :2] - middle).T) < radius
-    return s.family != "irregular" or np.count_nonzero(near) >= MIN_PIXELS
+    return s.family != "irregular" or int(np.count_nonzero(near)) >= MIN_PIXELS
 
 
 def _mostly(whole: Piece, parts: list[Piece]) -> bool:
