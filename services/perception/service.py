@@ -128,7 +128,7 @@ class PerceptionService:
     def _trusted(self, view: View, detections: list[Detection]) -> list[Detection]:
         """The detections that may be believed: half hidden by the hand, an object looks like another."""
         if view.camera == "wrist":
-            return [d for d in detections if refines(d, self._beliefs.published)]
+            return [d for d in detections if not d.known or refines(d, self._beliefs.published)]
         if self._phase() not in CLEAR and self._hand_at is not None:
             return [d for d in detections if math.dist(d.position, self._hand_at) > HAND_RANGE]
         return detections

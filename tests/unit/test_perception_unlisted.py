@@ -12,7 +12,6 @@ from common.messages import WorldObject
 from common.naming.names import match_object
 from services.perception.detection import Detection
 from services.perception.grounding import may_be_meant
-from services.perception.tracking.association import refines
 from services.perception.tracking.object_tracker import ObjectTracker
 from services.perception.views.view import View
 
@@ -112,27 +111,6 @@ def test_views_that_place_it_differently_show_one_surface() -> None:
     assert across(first, second) == {-35, 0}
     part = replace(second, size=(0.03, 0.07, 0.1), whole=False)
     assert len(across(first, part)) > 2, "the middle of a part is not that of the whole"
-
-
-@pytest.mark.parametrize(("width", "nearer"), [(0.072, True), (0.05, False)], ids=["most of it", "a half"])
-def test_a_part_that_measures_the_whole_shows_where_it_is(width: float, nearer: bool) -> None:
-    tracker = ObjectTracker(SCENE, 3, 0.3)
-    for n in range(4):
-        tracker.update(looking(4.0, -2.0), [sighting(4.0, -3.0, CAN, BLUE)], float(n))
-    size = width, width, 0.1
-    hand = replace(sighting(4.012, -3.0, CAN, BLUE), size=size, whole=False, distance=0.26, confidence=0.54)
-    tracker.update(looking(4.0, -2.7), [hand], 4.0)
-    assert (tracker.objects()[0].position[0] > 4.009) == nearer
-
-
-@pytest.mark.parametrize(
-    ("aside", "width", "told"), [(0.01, 0.072, True), (0.01, 0.03, False), (0.08, 0.07, False)],
-    ids=["behind the fingers", "a sliver", "its neighbour"],
-)  # fmt: skip
-def test_the_wrist_camera_tells_where_a_thing_that_nobody_listed_is(aside: float, width: float, told: bool) -> None:
-    _, believed = seen([sighting(4.0, -3.0, CAN, RED)])
-    near = sighting(4.0 + aside, -3.0, CAN, RED)
-    assert refines(replace(near, size=(width, width, 0.1), whole=False, confidence=0.54), believed) == told
 
 
 def test_pieces_of_one_object_are_reported_once() -> None:

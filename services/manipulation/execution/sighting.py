@@ -44,8 +44,8 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
         Failure: MISTAKEN, it was planned for a place or a side that is not the object's.
     """
     config, since = robot.config, robot.now
-    if not robot.io.peer("perception") or tilt_of(found) or plan.grasp.over_edge:
-        # From so near the wrist camera sees no end of what lies.
+    if not robot.io.peer("perception") or (tilt_of(found) and not found.measured) or plan.grasp.over_edge:
+        # From so near the wrist camera sees no end of what lies, by which a listed object is told.
         return plan
     robot.phase = "aim"
     seen: WorldObject | None = None

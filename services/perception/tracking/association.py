@@ -9,7 +9,7 @@ from common.kinds import kind_of
 from common.messages import WorldObject
 from services.perception.detection import Detection
 from services.perception.tracking.descriptor import shares
-from services.perception.tracking.track import SURE, Track, agrees
+from services.perception.tracking.track import SURE, Track
 from services.perception.views.view import View
 
 SAME = 0.12
@@ -42,11 +42,8 @@ less than the distance to a neighbour."""
 
 
 def refines(d: Detection, believed: Sequence[WorldObject]) -> bool:
-    """Whether the wrist camera may say where an object is more exactly: of round ones by any part of them, and of those
-    that nobody listed by as much as shows their extents."""
+    """Whether the wrist camera may say where a listed object is more exactly: of round ones by any part of them."""
     near = [o for o in believed if math.dist(o.position, d.position) < REFINED and not o.held]
-    if not d.known:
-        return any(o.measured and agrees(o.size, d) for o in near)
     whole = kind_of(d.kind).straight or (d.whole and d.confidence >= SURE)
     return whole and any(o.label == d.label for o in near)
 

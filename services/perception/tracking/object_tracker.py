@@ -12,7 +12,7 @@ from common.messages import WorldObject
 from services.perception.detection import Detection
 from services.perception.tracking.association import moved_here, overlap, separation, should_show
 from services.perception.tracking.descriptor import shares
-from services.perception.tracking.track import SURE, Track, see
+from services.perception.tracking.track import SURE, Track, aim, see
 from services.perception.views.view import View
 
 CERTAIN = 0.8
@@ -38,8 +38,11 @@ class ObjectTracker:
 
     def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
         """Take in what a view shows; ids of the objects that were seen."""
-        seen: set[str] = set()
         free = [t for t in self._tracks if not t.held]
+        seen: set[str] = set()
+        if view.camera == "wrist":
+            seen = {t.id for t in free if not t.known and aim(t, view, detections, now)}
+            detections = [d for d in detections if d.known]
         pairs = sorted(
             (apart, n, k)
             for n, d in enumerate(detections)

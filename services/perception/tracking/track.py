@@ -1,6 +1,7 @@
 """One object in one place: its evidence over time, and what a detection adds to it. Pure."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -8,6 +9,8 @@ import numpy as np
 from common.floor_plan import Vec3
 from services.perception.detection import Detection
 from services.perception.tracking.descriptor import Descriptor
+from services.perception.tracking.registration import shift
+from services.perception.views.view import View
 
 UNLISTED = ("", "", "")
 """Stands for the name of an object that was not listed, in the evidence for names."""
@@ -27,9 +30,8 @@ TRUST = 4.0
 """Weight of a track's position, in best sightings, beyond which further ones no longer add to it."""
 PARTIAL = 0.1
 """Weight of a sighting of a part, of that of the whole; times the squared share that was seen."""
-AGREES = 0.005
-"""Difference [m] of all extents up to which a part shows where the whole is. Chosen: twice the error of a whole view;
-the wrist camera before a thing, behind its fingers, sees most of it."""
+NEAREST = 0.2
+"""Distance [m] from which on a nearer view says no more: the least range of a stereo camera."""
 POORER = 0.5
 """Weight of a sighting, of the best one, from which it may still turn the object, and have it elsewhere though its
 place is not seen to be empty."""
@@ -90,9 +92,8 @@ class Track:
 def see(track: Track, detection: Detection, now: float, left: bool = True) -> None:
     """Take in a detection of the track's object at robot time `now` [s]; `left`: its place is seen to be empty."""
     d = _turned_over(track, detection)
-    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
-    shows_middle = d.whole or (track.whole and agrees(track.size, d))
-    weight *= 1.0 if shows_middle else PARTIAL * d.share**2
+    weight = weight_from(d.distance) * (0.3 if d.confidence < SURE else 1.0)
+    weight *= 1.0 if d.whole else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
     if shift > MOVED and not left and weight < POORER * track.best:
         # Something still stands where a better view has shown it: this one has measured badly.
@@ -121,7 +122,7 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
     track.position, track.on = (x, y, z), d.on
     # Close looks count more, slivers less, and old mistakes fade.
     evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance)) * (1.0 if d.whole else d.share)
-    track.looks.add(d, evidence, fell or shift > MOVED, d.position if shows_middle else track.position)
+    track.looks.add(d, evidence, fell or shift > MOVED, d.position if d.whole else track.position)
     guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
     if fell or (share and weight >= POORER * track.best and not guess):
         track.yaw, track.yaw_seen = d.yaw if d.known else track.looks.turned(d), d.yaw_seen
@@ -136,10 +137,28 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
         track.size, track.tilt = (d.size if d.known else track.looks.size), d.tilt
 
 
-def agrees(size: Vec3, d: Detection) -> bool:
-    """A detection of what nobody listed has the extents of an object, and thus its middle, be a part of it hidden."""
-    extents = zip(sorted(size), sorted(d.size), strict=True)
-    return not d.known and all(abs(was - now) < AGREES for was, now in extents)
+def aim(track: Track, view: View, detections: Sequence[Detection], now: float) -> bool:
+    """Take from a view at `now` [s] where an object that nobody listed is, by whatever part of it that shows, and
+    nothing else; True when it does."""
+    believed, reach = track.looks.points + np.array(track.position), max(track.size) / 2 + MOVED
+    near = [d for d in detections if not d.known and math.dist(d.position, track.position) < reach]
+    found = [(shift(believed, d.points, view), d) for d in near]
+    by, d = min(found, key=lambda f: math.inf if f[0] is None else float(np.linalg.norm(f[0])), default=(None, None))
+    if by is None or d is None:
+        return False
+    x, y, z = track.position
+    track.position = x + float(by[0]), y + float(by[1]), z
+    # How high it is is told by what it stands on.
+    track.looks.points = np.add(track.looks.points, (0.0, 0.0, by[2]))
+    track.weight = track.best = max(track.weight, weight_from(d.distance))
+    track.seen_at = track.looked_at = now
+    track.misses, track.sightings = 0, track.sightings + 1
+    return True
+
+
+def weight_from(distance: float) -> float:
+    """What a whole view from that distance [m] says of where an object is."""
+    return float(1.0 / max(NEAREST, distance) ** 2)
 
 
 def _turned_over(track: Track, d: Detection) -> Detection:

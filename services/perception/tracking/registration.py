@@ -1,0 +1,78 @@
+"""How far what one view shows of an object lies from where it is believed to be: a shift, and no turn. Pure.
+
+In the manner of trimmed ICP (Chetverikov et al., "The trimmed iterative closest point algorithm", ICPR 2002): what has
+no counterpart, as a side that was not seen before, counts no more than what is `APART`. Where the believed object would
+be, and the view sees what is behind it, counts as well: so the outline of a flat thing says where it is.
+"""
+
+import itertools
+import math
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from common.geometry import Array
+from services.perception.views.view import View
+
+APART = 0.006
+"""Distance [m] from which points are of different parts. Chosen: less than the thickness of a thing, more than the
+noise of either camera and the distance of the points."""
+THROUGH = 0.006
+"""How far [m] behind a believed point the view must see for nothing to be there: several times its noise."""
+STEPS = (0.004, 0.002, 0.001, 0.0005)
+"""Steps [m] of the search along and between the axes. Chosen: from within what finds its counterpart to a quarter of
+the error of an arm."""
+FARTHEST = 0.03
+"""Farthest shift [m] that is an error of cameras and of where the base stands, and no other place."""
+STAYS = 0.03
+"""What a shift by `FARTHEST` costs, as a share of all points: along what the view does not show the end of it stays."""
+EXPLAINED = 0.6
+"""Least share of the seen points that have a counterpart after the shift: less is another object, or hardly any of
+it."""
+LEAST = 0.2
+"""Least share of the believed points that is seen: of less, as between closing fingers, the outline is theirs."""
+MOST = 300
+"""Points of either that are looked at. Chosen: 80 ms of a step for one object."""
+_AROUND = np.array(sorted(itertools.product((-1.0, 0.0, 1.0), repeat=3), key=any))
+
+
+def shift(believed: Array, seen: Array, view: View) -> Array | None:
+    """How far (3,) [m] an object is from where its points (n, 3) [map] are believed to be, by those that a view shows
+    of it; None where they are not of one object.
+    """
+    if not len(believed) or len(seen) < LEAST * len(believed):
+        return None
+    tree, seen, believed = cKDTree(believed), _some(seen), _some(believed)
+
+    def costs(moved: Array) -> Array:
+        apart, _ = tree.query(seen - moved[:, None], distance_upper_bound=APART)
+        far = np.square(np.minimum(apart, APART) / APART).mean(axis=1)
+        stays = STAYS * np.square(moved).sum(axis=1) / FARTHEST**2
+        return np.asarray(far + _empty(believed + moved[:, None], view) + stays)
+
+    best = np.zeros(3)
+    for step in STEPS:
+        while True:
+            tried = best + step * _AROUND
+            lowest = int(np.argmin(costs(tried)))
+            if not lowest:
+                break
+            best = tried[lowest]
+            if float(np.linalg.norm(best)) > FARTHEST:
+                return None
+    apart, _ = tree.query(seen - best, distance_upper_bound=APART)
+    return best if float(np.isfinite(apart).mean()) >= EXPLAINED else None
+
+
+def _empty(points: Array, view: View) -> Array:
+    """Shares (n,) of the points (n, m, 3) [map] in the picture through whose places a view sees."""
+    u, v, far = np.moveaxis(view.project(points.reshape(-1, 3)).reshape(points.shape), 2, 0)
+    h, w = view.shape
+    inside = (far > 0) & (u >= 0) & (u < w) & (v >= 0) & (v < h)
+    depth = view.depth[np.clip(v, 0, h - 1).astype(int), np.clip(u, 0, w - 1).astype(int)]
+    through = inside & (depth > far + THROUGH)
+    return np.asarray(through.sum(axis=1) / np.maximum(1, inside.sum(axis=1)))
+
+
+def _some(points: Array) -> Array:
+    return points[:: max(1, math.ceil(len(points) / MOST))]
