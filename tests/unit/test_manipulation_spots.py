@@ -10,7 +10,7 @@ from common import messages as m
 from common.floor_plan import Wall
 from common.geometry import Rectangle
 from common.household import load_household
-from services.manipulation.planning.planning_scene import GAPS, bin_spots, obstacles, spots
+from services.manipulation.planning.planning_scene import ELSEWHERE, GAPS, HAND_ROOM, bin_spots, obstacles, spots
 
 SCENE = load_household("apartment")
 TABLE = SCENE.receptacle("kitchen table")
@@ -35,6 +35,24 @@ def test_spots_lie_on_the_surface_and_clear_of_what_stands_there(near: bool) -> 
         apart = math.dist(there, anchor.position[:2])
         assert TABLE.contains(*there) and apart > 0.08 + 0.03
         assert not near or apart < 0.08 + max(GAPS) + 0.01
+
+
+def test_between_what_stands_on_a_large_surface_the_spot_with_room_for_the_hand_comes_first() -> None:
+    assert TABLE is not None
+    desk = msgspec.structs.replace(TABLE, size=(0.8, 1.6), yaw=0.0)
+    half = np.array([0.34, 0.74])
+    nodes = [(u, v) for u in np.linspace(-half[0], half[0], 5) for v in np.linspace(-half[1], half[1], 7)]
+    base = (desk.center[0] - 0.75, desk.center[1], 0.0)
+    found = spots(desk, base, 0.08, [apple(u, v) for u, v in nodes], FORWARD)
+    assert found, "whatever it is that things stand in rows"
+    crowd = [apple(u, v) for u, v in nodes if v > 0]
+    x, y = spots(desk, base, 0.08, crowd, FORWARD)[0]
+    there = base[0] + x, base[1] + y
+    assert min(math.dist(there, o.position[:2]) for o in crowd) > 0.08 + HAND_ROOM - 0.02
+    first = spots(desk, base, 0.08, [], FORWARD)[:10]
+    assert all(math.dist(a, b) > ELSEWHERE for a in first for b in first if a is not b), (
+        "where one fails so do its like"
+    )
 
 
 def test_nothing_is_let_go_above_what_lies_in_the_bin() -> None:

@@ -1,6 +1,6 @@
 """The object attached to the hand, with the pose in which it was grasped."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,6 +26,8 @@ is round is wider, its handle or wall is not."""
 LEVEL = 0.35
 """Vertical part of the approach, as a share, up to which the hand is level. Chosen: at 20 degrees the knuckles of a
 2F-85, 60 mm below its axis and 70 behind the pads, are as low as its lower finger."""
+SEEN = 0.98
+"""Share of the points seen of something that are no mixed pixels at its edge."""
 USUAL_SIZE = (0.06, 0.06, 0.10)
 """Full extents [m] of an object in the hand that nobody described. Chosen: near those of a mug."""
 
@@ -54,6 +56,7 @@ class GraspedObject:
     as_found: "GraspedObject | None" = None
     part: bool = False
     guessed: bool = False
+    points: Array | None = field(default=None, compare=False, repr=False)
 
     @property
     def from_below(self) -> bool:
@@ -82,6 +85,14 @@ class GraspedObject:
         A finger that is in a handle has to come out of it, and not to spread it; one that is below has no more room.
         """
         return self.width + PLAY if self.entangled else None
+
+    def reaches(self, turn: Array) -> float:
+        """How far [m] down from its middle it reaches, turned by `turn` (3, 3): as far as up, by what was seen of it,
+        or else by its extents."""
+        half = float(np.abs((turn @ yaw_matrix(self.yaw))[2]) @ self.size) / 2
+        if self.points is None:
+            return half
+        return min(half, float(np.quantile(np.abs(self.points @ turn[2]), SEEN)))
 
     def box(self) -> tuple[Array, Array, Array]:
         """Half extents (3,) [m] of the object's collision box along its own axes, or the hand's where those are only
@@ -113,7 +124,9 @@ def attach(target: Target, grasp: Grasp) -> GraspedObject:
     label, kind, width = target.label, target.kind, grasp.width
     offset = hand.position - np.array([x, y, target.bottom])
     part = grasp.on_surface and width < PART * min(target.size)
-    as_found = GraspedObject(label, kind, hand.rotation, offset, target.size, width, target.yaw, part=part)
+    as_found = GraspedObject(
+        label, kind, hand.rotation, offset, target.size, width, target.yaw, part=part, points=target.points
+    )
     if grasp.turns_over:
         turn = turned_over(hand.rotation[:, 2])
         offset = turn @ (hand.position - np.array([x, y, target.bottom + target.size[2]]))

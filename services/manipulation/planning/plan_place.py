@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import Array, yaw_matrix
+from common.geometry import Array
 from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import Leg, connect
@@ -14,17 +14,20 @@ from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.edge_spots import Placement
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import EASY, SLAB, with_object
+from services.manipulation.planning.put_down import LEANS, TURNS, PutDown, tipped, turned
 
 FINGER = 0.018
 """Height [m] of a fingertip below what it holds at a slant (Robotiq 2F-85)."""
 
-TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi)
-"""How far [rad] the hand is turned about the vertical, off the way from the arm to the spot, in the order of trying."""
+ABOVE = (0.08, 0.04)
+"""How far [m] above the spot the straight way down begins, in the order of trying."""
 DROP = 0.004
 """Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
 DEEPER, DEEPEST = 0.005, 0.06
 """Step and length [m] of the way on down where nothing is felt. Chosen: half of the centimetre of fall that counts as
 dropped; the underside of a lying mug was measured 25 mm too low, with as much again to spare."""
+NO_IK = "no IK"
+"""Why not: the hand does not come there."""
 AMPLE = 0.4
 """Extents [m] of a surface that reaches as far as the hand around what it puts down, and not to the robot's base."""
 
@@ -56,15 +59,16 @@ def plan_place(
     now: Array,
 ) -> PlacePlan:
     """Set the held object down on the first spot of a surface that works, `drop` above it, and a finger more above it
-    where one is below what is held.
+    where one is below what is held: turned about the vertical, or else tipped as far as it may fall back.
 
     Raises:
         PlanError: UNREACHABLE.
     """
     height = surface + drop + (FINGER if held.from_below else 0.0)
     bearings = [(spot, math.atan2(spot[1], spot[0] - planner.arm.forward)) for spot in spots[:10]]
-    headings = [(spot, bearing + turn) for spot, bearing in bearings for turn in TURNS]
-    return plan_placements(planner, held, headings, height, around, now)
+    poses = [turned(held, spot, bearing + turn) for spot, bearing in bearings for turn in TURNS]
+    poses += [pose for lean in LEANS for spot, bearing in bearings for pose in tipped(held, spot, bearing, lean)]
+    return _first(planner, held, poses, height, around, now)
 
 
 def plan_placements(
@@ -80,15 +84,32 @@ def plan_placements(
     Raises:
         PlanError: UNREACHABLE.
     """
+    return _first(planner, held, [turned(held, *placement) for placement in placements], height, around, now)
+
+
+def _first(
+    planner: Planner,
+    held: GraspedObject,
+    poses: Sequence[PutDown],
+    height: float,
+    around: Sequence[Obstacle],
+    now: Array,
+) -> PlacePlan:
+    """The first that works; tipped only where the hand does not come to as it grasped."""
     rng = planner.rng()
     failures: list[str] = []
+    reached: set[tuple[float, float]] = set()
     planner.arm.open_fingers(held.opening)
     try:
-        for spot, heading in placements:
-            plan = _try_place(planner, held, spot, height, heading, around, now, rng)
+        for pose in poses:
+            if pose.raised and pose.spot in reached:
+                continue
+            plan = _try_place(planner, held, pose, height, around, now, rng)
             if isinstance(plan, PlacePlan):
                 return plan
             failures.append(plan)
+            if plan != NO_IK:
+                reached.add(pose.spot)
     finally:
         planner.arm.open_fingers()
     reasons = counted(failures) or "no free spot within reach"
@@ -98,16 +119,15 @@ def plan_placements(
 def _try_place(
     planner: Planner,
     held: GraspedObject,
-    spot: tuple[float, float],
+    pose: PutDown,
     height: float,
-    heading: float,
     around: Sequence[Obstacle],
     now: Array,
     rng: np.random.Generator,
 ) -> "PlacePlan | str":
     arm = planner.arm
     arm.set_obstacles(around)
-    way = _set_down(planner, held, spot, height, heading, now)
+    way = _set_down(planner, held, pose, height, now)
     if isinstance(way, str):
         return way
     high, down = way.high, way.down
@@ -118,7 +138,7 @@ def _try_place(
     arm.hold(None)
     if not reach:
         return "no path"
-    stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + way.turned)
+    stands = Obstacle((*pose.spot, height + held.size[2] / 2), held.size, held.yaw + pose.spin)
     beside = with_object(around, stands)
     back = _leave(planner, held, way, beside)
     if back is None:
@@ -130,46 +150,43 @@ def _try_place(
         return "no path home"
     home_way = planner.legs(home, beside)
     deeper, grounded = _deeper(planner, way, around)
-    return PlacePlan(reach, [high, *down], deeper, grounded, [down[-1], *back], home_way, spot)
+    return PlacePlan(reach, [high, *down], deeper, grounded, [down[-1], *back], home_way, pose.spot)
 
 
 @dataclass(frozen=True)
 class _Down:
-    """The hand's pose where it lets go, `high` (7,) above it, the straight way `down` from there; `turned` [rad]: how
-    far the object is then turned about the vertical from how it was grasped.
-    """
+    """The hand's pose where it lets go, `high` (7,) above it, the straight way `down` from there."""
 
     target: Pose
     high: Array
     down: list[Array]
-    turned: float
 
 
-def _set_down(
-    planner: Planner, held: GraspedObject, spot: tuple[float, float], height: float, heading: float, now: Array
-) -> "_Down | str":
-    """The straight way down to a spot among the arm's obstacles, the hand pointing to `heading` [rad] there."""
-    arm, approach = planner.arm, held.rotation[:, 2]
-    # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
-    level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
-    delta = heading - np.arctan2(level[1], level[0])
-    spin = yaw_matrix(float(delta))
-    target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
-    above = target.moved(np.array([0.0, 0.0, 0.08]))
-    arm.hold(None)
-    high = planner.ik.solve(above, seeds(arm, above, now))
-    if high is None:
-        return "no IK"
-    high = arm.nearest_turn(high, now)
-    down = planner.straight(high, above, target)
-    if down is None:
-        return "no straight way down"
-    if any(arm.collides(q) for q in down):
-        return "placing collides"
-    arm.hold(*held.box())
-    beside = arm.collides(high)
-    arm.hold(None)
-    return "object collides above the spot" if beside else _Down(target, high, down, float(delta))
+def _set_down(planner: Planner, held: GraspedObject, pose: PutDown, height: float, now: Array) -> "_Down | str":
+    """The straight way down to a spot among the arm's obstacles, its underside at a height [m] there."""
+    arm, turn = planner.arm, pose.turn
+    middle = np.array([0.0, 0.0, held.size[2] / 2])
+    at = np.array([*pose.spot, height + pose.raised]) + middle + turn @ (held.offset - middle)
+    target, why = Pose(at, turn @ held.rotation), ""
+    for rise in ABOVE:
+        above = target.moved(np.array([0.0, 0.0, rise]))
+        arm.hold(None)
+        high = planner.ik.solve(above, seeds(arm, above, now))
+        if high is None:
+            why = why or NO_IK
+            continue
+        high = arm.nearest_turn(high, now)
+        down = planner.straight(high, above, target)
+        if down is None:
+            why = "no straight way down"
+            continue
+        if any(arm.collides(q) for q in down):
+            return "placing collides"
+        arm.hold(*held.box())
+        beside = arm.collides(high)
+        arm.hold(None)
+        return "object collides above the spot" if beside else _Down(target, high, down)
+    return why
 
 
 def _deeper(planner: Planner, way: _Down, around: Sequence[Obstacle]) -> tuple[list[Array], bool]:
@@ -203,7 +220,7 @@ def can_be_set_down(planner: Planner, held: GraspedObject, surface: float, now: 
     arm.open_fingers(held.opening)
     try:
         for turn in TURNS:
-            way = _set_down(planner, held, spot, height, turn, now)
+            way = _set_down(planner, held, turned(held, spot, turn), height, now)
             if isinstance(way, _Down) and _leave(planner, held, way, [slab]) is not None:
                 return True
             arm.set_obstacles([slab])
@@ -218,7 +235,7 @@ def _leave(planner: Planner, held: GraspedObject, way: _Down, beside: Sequence[O
     """
     arm, target, at = planner.arm, way.target, way.down[-1]
     arm.set_obstacles(beside)
-    tilted = held.entangled or abs(held.rotation[2, 2]) < 0.85
+    tilted = held.entangled or abs(way.target.rotation[2, 2]) < 0.85
     away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
     for share in (1.0, 0.6):
         path = planner.straight(at, target, target.moved(share * away))

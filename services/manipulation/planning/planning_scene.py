@@ -34,6 +34,11 @@ LEAST_POINTS = 12
 DIRECTIONS, GAPS = 16, (0.05, 0.08, 0.12)
 """In how many directions a spot beside an object is looked for, and how far [m] beyond both outlines. Chosen: room for
 a finger and the error of a sighting at least."""
+LATTICE, ELSEWHERE = 0.05, 0.08
+"""Distance [m] between the points of a surface that are looked at, and from which on a spot is another one: nearer ones
+fail alike. Chosen: what stands on a table is as large, and what the arm reaches changes within it."""
+HAND_ROOM = 0.10
+"""Free space [m] around what is put down from which on more is no better: the breadth of the open hand."""
 EASY = 0.54
 """Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
 ASIDE = 0.35
@@ -145,18 +150,24 @@ def spots(
     """
     others = [(o.position[0], o.position[1], max(o.size[0], o.size[1]) / 2) for o in taken if not o.held]
     radius = footprint / 2
-    grid = []
+    rated = []
     half = [max(0.0, v / 2 - radius - 0.02) for v in r.size]
-    rows = product(np.linspace(-half[0], half[0], 5), np.linspace(-half[1], half[1], 7))
+    rows = product(*(np.linspace(-h, h, 2 * math.ceil(h / LATTICE) + 1) for h in half))
     for u, v in _ring_of(r, radius, beside) if beside else rows:
         if abs(u) > half[0] + 1e-9 or abs(v) > half[1] + 1e-9:
             continue
         x, y = r.outline.to_map(float(u), float(v))
-        if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
-            bx, by, _ = compose(inverse(base), (x, y, 0.0))
-            ideal = math.hypot(bx - forward - EASY, 0.6 * by)
-            grid.append((ideal, (bx, by)))
-    return [spot for ideal, spot in sorted(grid) if ideal < 0.6]
+        room = min((math.hypot(x - ox, y - oy) - radius - other for ox, oy, other in others), default=HAND_ROOM)
+        spot = to_frame(base, (x, y))
+        ideal = math.hypot(spot[0] - forward - EASY, 0.6 * spot[1])
+        if room > 0.03 and ideal < 0.6:
+            rated.append((ideal + max(0.0, HAND_ROOM - room), spot))
+    ranked = [spot for _, spot in sorted(rated)]
+    first: list[tuple[float, float]] = []
+    for spot in ranked:
+        if all(math.dist(spot, other) > ELSEWHERE for other in first):
+            first.append(spot)
+    return [*first, *(spot for spot in ranked if spot not in first)]
 
 
 def bin_spots(r: Receptacle, base: Pose2, inside: Iterable[WorldObject], forward: float) -> list[tuple[float, float]]:

@@ -1,0 +1,57 @@
+"""What the hand cannot bring as it grasped it is tipped, where it does not fall then."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.geometry import Array
+from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.motion_planner import PlanError
+from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place
+from services.manipulation.planning.planning_scene import SLAB
+from services.manipulation.planning.put_down import FALLS, tipped
+from tests.unit.test_manipulation_stances import PLANNER, REST
+
+WORKTOP, SPOTS = 0.91, [(0.44, 0.0), (0.5, 0.15)]
+
+
+def from_above(size: tuple[float, float, float], points: Array | None = None) -> GraspedObject:
+    """Something that the hand took from straight above, its fingers across it."""
+    hand = approach_rotation(0.0, math.pi / 2)
+    return GraspedObject("thing", "", hand, np.array([0.0, 0.0, 0.025]), size, 0.022, 0.0, points=points)
+
+
+def rod() -> GraspedObject:
+    turns = np.linspace(0.0, math.tau, 40)
+    seen = [[x, 0.011 * math.cos(t), 0.011 * math.sin(t)] for x in (-0.12, 0.0, 0.12) for t in turns]
+    return from_above((0.24, 0.022, 0.022), np.array(seen))
+
+
+def placed(held: GraspedObject) -> PlacePlan:
+    worktop = Obstacle((0.66, 0.0, WORKTOP - SLAB / 2), (0.6, 1.6, SLAB), 0.0)
+    return plan_place(PLANNER, held, SPOTS, WORKTOP, DROP, [worktop], REST)
+
+
+def test_a_rod_from_above_is_rolled_onto_a_surface_as_high_as_the_elbow() -> None:
+    plan = placed(rod())
+    hand = PLANNER.arm.pose(plan.lower[-1])
+    assert hand.rotation[2, 2] > -0.97, "straight down the arm does not come there"
+    along = hand.rotation @ rod().rotation.T @ (1.0, 0.0, 0.0)
+    assert abs(along[2]) < 0.05, "it is rolled about its own length, and neither end is in the air"
+
+
+def test_what_would_fall_over_is_not_tipped() -> None:
+    with pytest.raises(PlanError, match="no IK"):
+        placed(from_above((0.066, 0.066, 0.1)))
+
+
+@pytest.mark.parametrize(
+    ("size", "may"), [((0.24, 0.022, 0.022), True), ((0.2, 0.1, 0.03), False)], ids=["rod", "book"]
+)
+def test_it_is_tipped_only_as_far_as_its_middle_does_not_fall_back(size: tuple[float, float, float], may: bool) -> None:
+    poses = tipped(from_above(size), (0.5, 0.0), 0.0, math.radians(30))
+    assert bool(poses) == may
+    assert all(pose.raised <= FALLS for pose in poses)
