@@ -1,6 +1,7 @@
 """What reaches over the free edge of its surface is measured as a whole; what is beside it is none of its objects."""
 
 import math
+from dataclasses import replace
 
 import msgspec
 import mujoco
@@ -52,9 +53,10 @@ def seen_with_box(over: float) -> tuple[View, Household, tuple[float, float, flo
     return view, msgspec.structs.replace(told(scene), things=()), (*at, z + THICK / 2)
 
 
-@pytest.mark.parametrize("over", [0.0, 0.03, 0.07])
-def test_it_is_measured_as_a_whole(over: float) -> None:
+@pytest.mark.parametrize(("over", "low"), [(0.0, 0.0), (0.03, 0.0), (0.07, 0.0), (0.05, 0.008)])
+def test_it_is_measured_as_a_whole_though_all_is_seen_lower_than_it_is(over: float, low: float) -> None:
     view, household, at = seen_with_box(over)
+    view = replace(view, position=view.position - (0.0, 0.0, low))
     found = [d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "kitchen table"]
     assert len(found) == 1
     assert math.dist(found[0].position[:2], at[:2]) < 0.012

@@ -72,9 +72,8 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         surface = Surface(r.name, r.center[2])
         outline = r.outline.grown(-WALL_EDGE if r.depth else -EDGE)
         cloud = _over(view, usable, outline, surface.height)
-        if not r.depth:
-            cloud = cloud.joined(_beyond(view, usable, r, outline))
-        found += [s for s in _on(view, surface, cloud, near, own, dark) if r.depth or _stands_on(s, r)]
+        beyond = None if r.depth else _beyond(view, usable, r, outline)
+        found += [s for s in _on(view, surface, cloud, near, own, dark, beyond) if r.depth or _stands_on(s, r)]
     for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
@@ -92,13 +91,13 @@ def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
 
 
 def _beyond(view: View, usable: Mask, r: Receptacle, outline: Rectangle) -> Cloud:
-    """The usable pixels of what reaches over the free edges of a receptacle, whose own front ends lower."""
+    """The usable pixels before the free edges of a receptacle: its own front, and what reaches over them."""
     depth, width = (side / 2 - EDGE for side in r.size)
     left, right, below, above = (OVERHANG * (way in r.approach) for way in ((-1, 0), (1, 0), (0, -1), (0, 1)))
     left, right, below, above = -depth - left, depth + right, -width - below, width + above
     x, y = r.outline.to_map((left + right) / 2, (below + above) / 2)
     wider = Rectangle(x, y, right - left, above - below, r.yaw)
-    low, high = r.center[2] + CLEARANCE, r.center[2] + MAX_HEIGHT
+    low, high = r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
     cloud = _between(view, usable, low, high, view.window(corners(wider, low, high)))
     return cloud.kept(inside(cloud.x, cloud.y, wider) & ~inside(cloud.x, cloud.y, outline))
 
@@ -135,17 +134,29 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
     return Cloud(found, x, y, z)
 
 
-def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:
-    """Pieces above one surface, whose plane is measured where enough of it is visible."""
+def _on(
+    view: View,
+    expected: Surface,
+    cloud: Cloud,
+    near: Nearby,
+    own: Mask,
+    dark: Blobs | None,
+    beyond: Cloud | None = None,
+) -> list[Segment]:
+    """Pieces above one surface, whose plane is measured where enough of it is visible; of the pixels `beyond` its edges
+    those above its front."""
     plane, least, rough = _plane(view, cloud, expected)
+    if beyond is not None:
+        front = plane[0] * beyond.x + plane[1] * beyond.y + plane[2]
+        cloud = cloud.joined(beyond.kept(beyond.z > front + CLEARANCE))
     outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
     noise = DEVIATIONS * rough * _noise(view, cloud, expected)
     over = (cloud.z > height + np.maximum(noise, least)) & (cloud.z < height + MAX_HEIGHT)
     kept = cloud.kept(over).outside(near.walls)
     far = view.depth.ravel()[kept.pixels] > FAR
-    beyond = kept.kept(far).outside(near.far_walls).pixels
-    above = np.concatenate([kept.pixels[~far], beyond])
+    farther = kept.kept(far).outside(near.far_walls).pixels
+    above = np.concatenate([kept.pixels[~far], farther])
     if least == THIN:
         flat = patches(view, cloud.pixels, cloud.z - height, over)
         above = np.union1d(above, flat[0] * view.shape[1] + flat[1])
