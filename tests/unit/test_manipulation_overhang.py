@@ -18,7 +18,7 @@ from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.edge_spots import INSET, edge_spots
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.overhang import LEDGE, plan_pull
+from services.manipulation.planning.overhang import LEDGE, LINKS_HALF, PADS_END, plan_pull
 from services.manipulation.planning.plan_place import plan_place, plan_placements
 from services.manipulation.planning.planning_scene import tilt_of
 from services.manipulation.planning.straight_grab import Way, feasible
@@ -85,6 +85,19 @@ def test_it_ends_along_the_edge_as_far_over_it_as_it_stays(yaw: float) -> None:
     hands = np.array([ARM.pose(q).position for q in plan.pull])
     assert (np.diff(hands[:, 0]) < 1e-3).all()
     assert all(hand[0] > x for hand, (x, _, _) in zip(hands, plan.line, strict=True))
+
+
+def test_the_pads_alone_meet_what_is_pulled_however_the_hand_leans() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    plan = plan_pull(PLANNER, box(0.62, 0.0), edge, [slab()], ARM.home.copy(), 0.1)
+    assert ARM.pose(plan.pull[-1]).rotation[2, 2] > -0.97, "it leans"
+    lowest = []
+    for q in plan.pull:
+        hand = ARM.pose(q)
+        corners = [(x, 0.0, -PADS_END) for x in (-LINKS_HALF, LINKS_HALF)]
+        lowest.append(min(float((hand.position + hand.rotation @ corner)[2]) for corner in corners))
+    assert min(lowest) > HEIGHT + 0.05
 
 
 def test_what_stands_in_the_way_is_not_pushed_down() -> None:

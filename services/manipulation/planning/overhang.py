@@ -47,8 +47,11 @@ STEP, TURN = 0.015, math.radians(4)
 """Way [m] and turn [rad] of an object between two configurations."""
 RISE = 0.006
 """How far [m] a hand that leans rises on its way: it is drawn up along the upper edge, and would press down there."""
-LINKS_HALF, PADS_END = 0.02, 0.022
+LINKS_HALF, PADS_END = 0.02, 0.021
 """Half the breadth [m] of the fingers above their pads, and where these end behind the pinch point (Robotiq 2F-85)."""
+BELOW_LINKS = 0.004
+"""How far [m] the upper edge of what is pulled is below those: the error of its height. A corner of theirs that slipped
+onto it dragged a box back by its upper side, which tipped it over the edge."""
 LET_GO = 0.012
 """How far [m] the fingers go back before they leave upwards."""
 
@@ -165,11 +168,10 @@ def _opening(half: tuple[float, float]) -> float:
 def _hand(at: Pose2, half: float, gap: float, tilt: float, edge: Edge, height: float) -> Pose:
     """The hand with its fingers `gap` [m] behind the far side of an object at (x, y, direction of that side)."""
     x, y, yaw = at
-    z = ABOVE + PAD * math.sin(tilt) + PAD_HALF * math.cos(tilt)
-    # What leans comes nearer with its height, and there the hand is broader than its pads.
-    above = max(0.0, height - z)
-    broad = LINKS_HALF if above > PADS_END * math.sin(tilt) else PAD_HALF
-    far = half + gap + broad / math.sin(tilt) + above / math.tan(tilt)
+    links = PADS_END * math.sin(tilt) - LINKS_HALF * math.cos(tilt)
+    z = max(ABOVE + PAD * math.sin(tilt) + PAD_HALF * math.cos(tilt), height - links + BELOW_LINKS)
+    # What leans comes nearer with its height.
+    far = half + gap + PAD_HALF / math.sin(tilt) + max(0.0, height - z) / math.tan(tilt)
     return Pose(
         np.array([x + far * math.cos(yaw), y + far * math.sin(yaw), edge.height + z]), approach_rotation(yaw, tilt)
     )
