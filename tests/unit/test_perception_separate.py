@@ -171,6 +171,17 @@ def test_what_has_no_shape_of_its_own_belongs_to_what_it_is_level_with() -> None
     assert jointed(lower, bat, cut, 0.0015, [1]) is not None, "what lies on another"
 
 
+@pytest.mark.parametrize(("higher", "one"), [(-0.008, True), (0.008, False)], ids=["its lens", "lies on it"])
+def test_what_is_within_another_and_lower_is_of_it(higher: float, one: bool) -> None:
+    view, glass = slab(lambda x, y: np.hypot(x, y) < 0.06, lambda x, y: np.hypot(x, y) < 0.04)
+    red = view.rgb[..., 1] < 60
+    stepped = replace(view, depth=(view.depth - 2 * higher * red).astype(np.float32))
+    cut = red[glass.rows, glass.columns].astype(np.intp)
+    raised = replace(glass, points=glass.points + np.outer(cut, (0.0, 0.0, higher)))
+    assert (jointed(stepped, raised, cut, 0.0015, [0]) is None) is one
+    assert jointed(stepped, raised, cut, 0.0015) is not None, "what has a shape is another"
+
+
 def test_what_is_as_long_as_a_ladle_is_one() -> None:
     (found,) = pieces(*rod([RED], [0.015], long=0.34))
     assert found.shape.size[0] == pytest.approx(0.34, abs=0.03)

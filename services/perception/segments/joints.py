@@ -19,6 +19,9 @@ THREAD = 0.05
 """The same, up to which it is one whatever the step: what hides a part of another does so along a side."""
 STEP, STEP_NOISE = 0.006, 2.0
 """Step of depth [m] at that line, plus that of noise, up to which one goes on in the other."""
+RINGED = 0.6
+"""The same, from which a piece is within another that no shape explains and stands over it, and is of it: the lens of a
+magnifying glass. Chosen: depth is missing along up to a third of its rim."""
 ALL_ALONG = 0.75
 """Share of that line on which there is no such step, from which a piece that has no shape of its own belongs to the
 other. Chosen: a wooden handle that runs round the red of its bat does; what lies on another or behind it steps down."""
@@ -44,12 +47,15 @@ def jointed(
     first, second, step = first[edge], second[edge], np.abs(one - other)[edge]
     outline = [np.count_nonzero((first == n) | (second == n)) for n in range(int(cut.max()) + 1)]
     names = np.arange(len(outline))
+    tops = [float(np.percentile(segment.points[cut == n, 2], 90)) for n in names]
     for a in range(len(outline)):
         for b in range(a):
             meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
             share = len(meet) / min(outline[a], outline[b])
             some = 0.25 if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
             level = np.mean(meet < STEP + STEP_NOISE * noise) >= some if len(meet) else False
-            if level or 0 < share < THREAD:
+            inner, outer = sorted((a, b), key=lambda n: outline[n])
+            ringed = outer in shapeless and share > RINGED and tops[inner] < tops[outer]
+            if level or ringed or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
     return renumbered(names[cut])
