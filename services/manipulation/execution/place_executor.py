@@ -70,15 +70,16 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
     if not choices:
         near = f" next to the {anchor.label}" if anchor else ""
         raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
-    last = Failure("UNREACHABLE", "nothing within reach")
+    first: Failure | None = None
     for held, name, surface, planned in choices:
         try:
             plan = yield from robot.work(planned, _around(robot, held, name), robot.joints.copy())
         except Failure as failure:
-            last = failure
+            # Why not where it belongs; that it cannot stand on the floor either is of no interest.
+            first = first or failure
             continue
         return (yield from _execute_place(robot, plan, held, name, surface))
-    raise last
+    raise first or Failure("UNREACHABLE", "nothing within reach")
 
 
 def place_back(robot: Robot, found: WorldObject) -> Steps[str]:
