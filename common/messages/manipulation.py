@@ -11,13 +11,14 @@ ManipStatus = Literal["idle", "executing", "done", "failed"]
 class ManipulationGoal(Message):
     """`grab`, `release`, `place <receptacle>`, `home` or `stop`.
 
-    `object`: which to grab, or next to which to place.
+    `object`: which to grab, or next to which to place. `to`: the receptacle on which what is grabbed is to be put.
     """
 
     goal: str
     id: str = ""
     attempt: int = 1
     object: ObjectRef | None = None
+    to: str = ""
 
 
 class ManipulationStatus(Message):

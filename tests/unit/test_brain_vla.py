@@ -523,7 +523,9 @@ def test_place_drives_to_the_receptacle_once() -> None:
     bench = planned(bin_steps)
     see(bench, 1)
     approach(bench, 1)
-    bench.did(bench.manip(1))
+    grab = bench.manip(1)
+    assert grab.to == "bin", "so that it is taken as it can be put down there"
+    bench.did(grab)
     bench.drove(bench.nav(1))
     bench.did(bench.manip(2))
     assert bench.texts(NAV) == ["goto bin"]

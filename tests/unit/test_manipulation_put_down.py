@@ -7,10 +7,13 @@ import pytest
 
 from common.geometry import Array
 from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError
-from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place
+from services.manipulation.planning.plan_grab import plan_grab
+from services.manipulation.planning.plan_place import DROP, PlacePlan, can_be_set_down, plan_place
 from services.manipulation.planning.planning_scene import SLAB
 from services.manipulation.planning.put_down import FALLS, tipped
 from tests.unit.test_manipulation_stances import PLANNER, REST
@@ -41,6 +44,21 @@ def test_a_rod_from_above_is_rolled_onto_a_surface_as_high_as_the_elbow() -> Non
     assert hand.rotation[2, 2] > -0.97, "straight down the arm does not come there"
     along = hand.rotation @ rod().rotation.T @ (1.0, 0.0, 0.0)
     assert abs(along[2]) < 0.05, "it is rolled about its own length, and neither end is in the air"
+
+
+def test_it_is_taken_so_that_it_can_be_put_where_it_belongs() -> None:
+    block = Target("block", "block", (0.68, 0.0, 0.52), 0.3, (0.1, 0.05, 0.04), shape="box")
+    table = Obstacle((0.8, 0.0, 0.5 - SLAB / 2), (0.5, 1.0, SLAB), 0.0)
+
+    def slant(to: float | None) -> float:
+        config = ManipulationConfig()
+        plan = plan_grab(
+            PLANNER, block, [[table]], REST, config.approach_distance, config.lift_height, config.reach, [], [], to
+        )  # fmt: skip
+        assert to is None or can_be_set_down(PLANNER, plan.grasped, to, REST)
+        return float(plan.grasp.pose.rotation[2, 2])
+
+    assert slant(None) < -0.99 < slant(WORKTOP), "from straight above it could only be taken"
 
 
 def test_what_would_fall_over_is_not_tipped() -> None:

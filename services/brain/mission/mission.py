@@ -1,6 +1,7 @@
 """A mission as data: what was asked, how far it came, what is in the hand, why it failed. No bus, no clock."""
 
 from collections.abc import Mapping
+from itertools import dropwhile
 from typing import Literal
 
 import msgspec
@@ -139,6 +140,11 @@ class Mission(msgspec.Struct):
     delivery: Delivery = msgspec.field(default_factory=Delivery)
     queued: list[m.VoiceCommand] = []
     command_id: str = ""
+
+    def destination(self, item: str) -> str:
+        """The receptacle on which the plan puts what it grasps under that name; "" if it says none."""
+        after = dropwhile(lambda s: s.action != "grasp" or s.object != item, self.planning.steps)
+        return next((s.target for s in after if s.action == "place"), "")
 
     @property
     def handled(self) -> list[str]:

@@ -130,7 +130,7 @@ def approach(ctx: Context, item: str) -> Behaviour:
 
 def grab(ctx: Context, item: str) -> Grab:
     """Close the hand around an object that was found."""
-    return Grab("grab", ctx, lambda: label_of(ctx, item), lambda: object_ref(ctx, item))
+    return Grab("grab", ctx, lambda: label_of(ctx, item), lambda: object_ref(ctx, item), item)
 
 
 def grasp(ctx: Context, item: str) -> Node:

@@ -120,16 +120,25 @@ class Manipulate(Move):
         }
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        message = m.ManipulationGoal(goal=self._text(), id=goal_id, object=self._about())
+        message = m.ManipulationGoal(goal=self._text(), id=goal_id, object=self._about(), to=self.to())
         return topics.MANIPULATION_GOAL, message
+
+    def to(self) -> str:
+        """The receptacle on which what is grabbed is to be put, as far as the command says."""
+        return ""
 
 
 class Grab(Manipulate):
-    """Holding is believed only after `done`."""
+    """Holding is believed only after `done`; `item`: how the plan calls the object."""
 
-    def __init__(self, node_id: str, ctx: Context, label: Text, about: Callable[[], m.ObjectRef | None]) -> None:
+    def __init__(
+        self, node_id: str, ctx: Context, label: Text, about: Callable[[], m.ObjectRef | None], item: str = ""
+    ) -> None:
         super().__init__(node_id, ctx, lambda: "grab", about, state="GRABBING")
-        self._label = label
+        self._label, self._item = label, item
+
+    def to(self) -> str:
+        return self.ctx.mission.destination(self._item)
 
     def succeed(self, result: Result) -> Status:
         label = self._label()

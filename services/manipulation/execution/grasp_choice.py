@@ -23,16 +23,18 @@ def chosen(
     around: list[list[Obstacle]],
     tried: Collection[Grasp],
     touched: list[Array],
+    to: str = "",
 ) -> Steps[GrabPlan]:
     """The plan of a grasp that is not among those `tried`; `target`, `around`, `touched`: as in `plan_grab`.
 
-    What lies is taken so that it can be stood up. Where that cannot be from here the base is sent elsewhere, once;
-    after that, or where no stance is better, it is taken so that it can be laid down.
+    It is taken so that it can be put down on the receptacle `to`. What lies is taken so that it can be stood up, there
+    or where things are brought. Where that cannot be from here the base is sent elsewhere, once; after that, or where
+    no stance is better, it is taken so that it can be laid down.
 
     Raises:
         Failure: as `plan_grab`; with the stance from which there is a grasp, where there is one.
     """
-    config, height = robot.config, _stands_on(robot, found, target)
+    config, height = robot.config, _stands_on(robot, found, target, to)
     failure = Failure("UNREACHABLE", "")
     for stand_on in (height, None) if height is not None else (None,):
         try:
@@ -46,21 +48,22 @@ def chosen(
             failure = other
         if failure.code != "UNREACHABLE":
             raise failure
-        if not tried and (stand_on is None or found.label not in robot.sent_to):
+        if not tried and (stand_on is None or (target.lies and found.label not in robot.sent_to)):
             yield from _look_elsewhere(robot, found, failure, stand_on)
     raise failure
 
 
-def _stands_on(robot: Robot, found: WorldObject, target: Target) -> float | None:
-    """Height [m] of the surface on which what lies will have to be stood up, as far as is known; None of what does not.
+def _stands_on(robot: Robot, found: WorldObject, target: Target, to: str) -> float | None:
+    """Height [m] of the surface on which it will have to be put down, as far as is known; None where that is of no
+    interest: in a bin, and of what does not lie unless it was said to what.
 
-    Things are brought to the delivery surface, unless somebody says otherwise later.
+    What lies is brought to the delivery surface, unless somebody says otherwise later.
     """
     household = robot.io.household
-    surface = household.receptacle(household.delivery) or household.receptacle(found.on)
-    if not target.lies or not kind_of(target.kind).upright or surface is None:
-        return None
-    return surface.center[2]
+    surface = household.receptacle(to)
+    if surface is None and target.lies and kind_of(target.kind).upright:
+        surface = household.receptacle(household.delivery) or household.receptacle(found.on)
+    return surface.center[2] if surface is not None and not surface.depth else None
 
 
 def _look_elsewhere(robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None) -> Steps[None]:

@@ -56,7 +56,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
-            plan = yield from chosen(robot, found, target, around, tried, touched_from(robot, found.label))
+            plan = yield from chosen(robot, found, target, around, tried, touched_from(robot, found.label), goal.to)
         except Failure as failure:
             raise (last if tried else failure) from None
         candidates = shown(

@@ -47,7 +47,7 @@ def grab_or_pull(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[s
         if failure.code not in (TOO_WIDE, "UNREACHABLE") or failure.stance is not None:
             raise
         found = yield from _pull(robot, goal, wanted, failure)
-    here = m.ManipulationGoal(goal=goal.goal, id=goal.id, attempt=goal.attempt, object=reference(found))
+    here = m.ManipulationGoal(goal=goal.goal, id=goal.id, attempt=goal.attempt, object=reference(found), to=goal.to)
     evidence = yield from grab_with_room(robot, here, wanted)
     return f"{evidence}; pulled over the edge first"
 

@@ -28,6 +28,8 @@ DEEPER, DEEPEST = 0.005, 0.06
 dropped; the underside of a lying mug was measured 25 mm too low, with as much again to spare."""
 NO_IK = "no IK"
 """Why not: the hand does not come there."""
+NEARER = 0.1
+"""How much nearer [m] than easy the arm comes higher, and a base still stands before the surface."""
 AMPLE = 0.4
 """Extents [m] of a surface that reaches as far as the hand around what it puts down, and not to the robot's base."""
 
@@ -209,18 +211,20 @@ def _deeper(planner: Planner, way: _Down, around: Sequence[Obstacle]) -> tuple[l
 def can_be_set_down(planner: Planner, held: GraspedObject, surface: float, now: Array) -> bool:
     """An object can be set down as it is held, on an empty surface of that height [m] in front of the arm."""
     arm = planner.arm
-    spot = arm.forward + EASY, 0.0
-    slab = Obstacle((*spot, surface - SLAB / 2), (AMPLE, AMPLE, SLAB), 0.0)
+    easy, near = ((arm.forward + far, 0.0) for far in (EASY, EASY - NEARER))
+    slab = Obstacle((*easy, surface - SLAB / 2), (AMPLE, AMPLE, SLAB), 0.0)
     height = surface + DROP + (FINGER if held.from_below else 0.0)
-    hand = Pose(np.array([*spot, height]) + held.offset, held.rotation)
+    hand = Pose(np.array([*easy, height]) + held.offset, held.rotation)
     # Closed the fingertips are farther out than open.
     if any(planner.clearance.met(hand, width, [slab]) for width in (held.opening or arm.hand.open, held.width)):
         return False
     arm.set_obstacles([slab])
     arm.open_fingers(held.opening)
     try:
-        for turn in TURNS:
-            way = _set_down(planner, held, turned(held, spot, turn), height, now)
+        poses = [turned(held, spot, turn) for spot in (easy, near) for turn in TURNS]
+        poses += [pose for lean in LEANS for pose in tipped(held, near, 0.0, lean)]
+        for pose in poses:
+            way = _set_down(planner, held, pose, height, now)
             if isinstance(way, _Down) and _leave(planner, held, way, [slab]) is not None:
                 return True
             arm.set_obstacles([slab])

@@ -1,7 +1,7 @@
 """The straight parts of a grab, to the grasp and up from it, with room for the hand now and when it sets down again."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
@@ -46,7 +46,7 @@ class Way:
     cannot go so far a share of them.
 
     `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs; `stand_on`: height
-    [m] of a surface on which the hand has to be able to stand up what lies, None: it may stay lying.
+    [m] of a surface on which the hand has to be able to put it down, standing, None: it may be laid anywhere.
     """
 
     around: Sequence[Obstacle]
@@ -54,6 +54,8 @@ class Way:
     approach: float
     lift: float
     stand_on: float | None = None
+    answered: dict[tuple[float, ...], bool] = field(default_factory=dict, compare=False, repr=False)
+    """By height and slant of the hand, whether it can: other bearings come down the same."""
 
 
 def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
@@ -133,7 +135,7 @@ def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now
     if any(arm.collides(q) for q in back):
         return Miss("approach collides", frozenset(arm.met()))
     if not _stands_again(planner, target, grasp, way, now):
-        return Miss("could not be stood up")
+        return Miss("could not be stood up" if target.lies else "could not be put down there")
     return Lines(grasp, at, back, up, share * way.lift)
 
 
@@ -146,7 +148,11 @@ def _straight(planner: Planner, at: Array, begin: Pose, way: Array) -> tuple[lis
 
 
 def _stands_again(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> bool:
-    """What lies can be set upright with the hand as it grasps, or need not be: what was pulled is taken as it is."""
-    if grasp.axis is None or grasp.over_edge or way.stand_on is None:
+    """It can be put down with the hand as it grasps, or need not be: what was pulled is taken as it is."""
+    if (target.lies and grasp.axis is None) or grasp.over_edge or way.stand_on is None:
         return True
-    return can_be_set_down(planner, attach(target, grasp), way.stand_on, now)
+    held = attach(target, grasp)
+    alike = (round(float(held.offset[2]), 2), *(round(abs(float(v)), 1) for v in held.rotation[2]))
+    if alike not in way.answered:
+        way.answered[alike] = can_be_set_down(planner, held, way.stand_on, now)
+    return way.answered[alike]
