@@ -65,3 +65,13 @@ def test_the_rest_of_a_thin_thing_is_seen_with_what_stands_out_of_the_noise(thic
         heights.ravel() > 0.004,
     )  # fmt: skip
     assert (len(rows) > 0 and set(columns) >= {90, 91, 92}) == seen
+
+
+def test_the_seam_between_two_boards_is_no_part_of_what_lies_beside_it() -> None:
+    rgb = np.full((120, 160, 3), TABLE, np.uint8)
+    rgb[40:60, 50:90], rgb[50:52, 90:130] = RED, RED
+    heights = np.zeros((120, 160), np.float32)
+    heights[40:60, 50:90], heights[50:52, 90:130] = 0.015, 0.002
+    view = above(rgb, np.full((120, 160), HIGH, np.float32))
+    _, columns = patches(view, np.arange(heights.size), heights.ravel(), heights.ravel() > 0.004)
+    assert not set(columns) - set(range(94))

@@ -12,9 +12,11 @@ from common.floor_plan import Receptacle
 from common.geometry import Array
 from common.scene import load_scene
 from services.perception.segments import dark, segmentation
-from services.perception.segments.outlined import on_surface
+from services.perception.segments.outlined import on_surface, with_parts
+from services.perception.segments.segment import Segment
 from services.perception.shapes import silhouette
 from services.perception.shapes.measurement import LEVEL, Measurement
+from services.perception.unlisted import measured
 from services.perception.views.view import View
 from services.perception.views.visible_plan import Cloud
 
@@ -63,9 +65,9 @@ def handled(body: Solid, r: float, h: float) -> Solid:
     return inside
 
 
-def seen(solid: Solid, beside: bool = False, lit: float = math.inf) -> View:
+def seen(solid: Solid, beside: bool = False, lit: float = math.inf, colour: int = 8) -> View:
     """A black thing on a table of which only the table has depth; `beside`: something nearer stands before it; `lit`:
-    height [m] from which it has depth itself."""
+    height [m] from which it has depth itself, and this `colour`."""
     ahead = np.array([AT[0], AT[1], FLOOR + 0.05]) - EYE
     ahead /= np.linalg.norm(ahead)
     right = np.cross(ahead, (0.0, 0.0, 1.0))
@@ -84,6 +86,7 @@ def seen(solid: Solid, beside: bool = False, lit: float = math.inf) -> View:
         column = int(np.nonzero(black.any(axis=0))[0].mean())
         depth[:, column:] = 0.5
     rgb = np.where((black & (depth != 0.5))[..., None], np.uint8(8), np.uint8(150)).repeat(3, axis=-1)
+    rgb[black & (depth > 0) & (depth != 0.5)] = colour
     return View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), EYE, rotation)
 
 
@@ -122,6 +125,24 @@ def test_a_lit_upper_face_tells_a_block_from_what_is_lower_and_deeper(side: floa
     (shape,) = found(seen(box(side, side, high, yaw), lit=high - 0.005))
     assert shape.family == "box"
     assert shape.size == pytest.approx((side, side, high), abs=0.009)
+
+
+def test_what_is_wider_than_its_dark_foot_stands_where_its_lit_part_is() -> None:
+    foot, stem, cup, handles = (
+        cylinder(0.034, 0.035), cylinder(0.012, 0.18), cylinder(0.046, 0.18), box(0.016, 0.2, 0.14, 0.0),
+    )  # fmt: skip
+    view = seen(lambda p: foot(p) | stem(p) | (cup(p) | handles(p)) & (p[..., 2] > FLOOR + 0.09), lit=0.035, colour=220)
+    blobs, known = dark.blobs(view), np.flatnonzero(view.depth > 0)
+    x, y, z = view.points.reshape(-1, 3)[known].T
+    plane, nobody = np.array([0.0, 0.0, FLOOR]), np.zeros(view.shape, bool)
+    assert blobs is not None
+    (one,) = on_surface(view, "table", plane, Cloud(known, x, y, z), nobody, blobs)
+    rows, columns = np.nonzero(view.rgb[..., 0] == 220)
+    lit = Segment(one.surface, rows, columns, view.points[rows, columns].astype(np.float64), False, (True, True))
+    whole = with_parts(view, one, [lit])
+    assert whole.shape is None and len(whole.dark)
+    shape = measured(view, whole)
+    assert (shape.x, shape.y) == pytest.approx(AT, abs=0.015) and shape.size[2] == pytest.approx(0.18, abs=0.01)
 
 
 def test_a_handle_is_beside_the_body_and_no_part_of_it() -> None:

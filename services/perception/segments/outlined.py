@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array, Mask
-from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels
+from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels, guessed
 from services.perception.segments.segment import NEARER, RIM, Segment, Surface
 from services.perception.shapes import silhouette
 from services.perception.shapes.measurement import Measurement
@@ -123,8 +123,15 @@ def with_parts(view: View, segment: Segment, parts: list[Segment]) -> Segment:
     floor, shape = segment.surface.height, None
     if (at := silhouette.foot(view, pixels, floor)) is not None:
         shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor, points)
-    whole = shape is not None and max(shape.size[:2]) <= WIDEST and shape.size[2] <= HIGHEST
-    return replace(segment, rows=rows, columns=columns, points=points, shape=shape if whole else segment.shape)
+    fits = shape is not None and max(shape.size[:2]) <= WIDEST and shape.size[2] <= HIGHEST
+    if shape is not None and fits and is_of(np.array([[segment.shape.x, segment.shape.y]]), shape)[0]:
+        return replace(segment, rows=rows, columns=columns, points=points, shape=shape)
+    lit = np.concatenate([p.rows for p in parts]), np.concatenate([p.columns for p in parts])
+    if len(lit[0]) < len(segment.rows):
+        return replace(segment, rows=rows, columns=columns, points=points)
+    # What is wider above its foot seems to stand behind it: its lit parts say where it is.
+    foot = guessed(view, lit, (segment.rows, segment.columns))
+    return replace(segment, rows=lit[0], columns=lit[1], points=points, shape=None, dark=foot)
 
 
 def is_part(points: Array, shape: Measurement) -> bool:
