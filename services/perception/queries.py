@@ -149,7 +149,8 @@ class Queries:
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base, household, config = self._state.base or (0.0, 0.0, 0.0), self._io.household, self._config
         looks = [o for o in self._beliefs.objects(query.since or -math.inf) if o.id not in query.excluded]
-        if meant := next((o for o in looks if o.id == query.meant and not o.held), None):
+        told = self._beliefs.tracker.told_as(query.meant)
+        if meant := next((o for o in looks if o.id == told and not o.held), None):
             self._naming.confirm(query.query, meant.id)
             return Grounding(meant)
         doubtful = self._beliefs.tracker.doubtful()

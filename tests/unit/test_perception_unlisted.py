@@ -59,6 +59,17 @@ def test_what_looks_alike_gets_labels_of_its_own_that_stay() -> None:
     assert places == {"red can": pytest.approx(4.0), "red can 2": pytest.approx(4.4), "red can 3": pytest.approx(4.2)}
 
 
+def test_of_two_that_take_up_one_space_the_one_that_is_told_of_stands_for_the_other() -> None:
+    tracker, first = seen([sighting(4.0, -3.0, CAN, BLUE)], [sighting(4.0, -3.0, CAN, BLUE)])
+    for n in (3, 4, 5):
+        tracker.update(looking(0.0, 0.0), [sighting(4.035, -2.97, CAN, RED)], float(n))
+    # From elsewhere the two are seen to be one.
+    tracker.update(looking(0.0, 0.0), [replace(sighting(4.03, -2.98, CAN, RED), size=(0.12, 0.12, 0.1))], 6.0)
+    (only,) = tracker.objects()
+    assert only.id != first[0].id and tracker.told_as(first[0].id) == only.id == tracker.told_as(only.id)
+    assert tracker.told_as("object-9") == "object-9"
+
+
 def test_a_label_stays_until_another_kind_is_much_likelier() -> None:
     tracker, first = seen([sighting(4.0, -3.0, MUG, RED)])
     assert first[0].label == "red can"

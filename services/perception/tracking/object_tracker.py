@@ -112,6 +112,14 @@ class ObjectTracker:
 
         `since`: only what a picture has shown at that robot time [s] or later.
         """
+        return [_as_object(t, label) for t, label in _labelled(sorted(self._told(since), key=_age))]
+
+    def told_as(self, key: str) -> str:
+        """Id of what is told of where the object with that id is: of two that take up the same space one is."""
+        meant, told = [t for t in self._tracks if t.id == key], self._told(-math.inf)
+        return next((t.id for own in meant if own not in told for t in told if overlap(t, own)), key)
+
+    def _told(self, since: float) -> list[Track]:
         sure = [t for t in self._tracks if (t.confidence >= self._min or t.held) and t.looked_at >= since]
         best: dict[str, Track] = {}
         others: list[Track] = []
@@ -130,7 +138,7 @@ class ObjectTracker:
             told = track.held or track.sightings > 1 or track.confidence >= CERTAIN
             if told and not any(overlap(track, other) for other in chosen):
                 chosen.append(track)
-        return [_as_object(t, label) for t, label in _labelled(sorted(chosen, key=_age))]
+        return chosen
 
     def doubtful(self) -> set[str]:
         """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
