@@ -17,7 +17,7 @@ from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.politeness import without_politeness
 from common.language.preamble import with_preamble
-from common.language.repairs import settled
+from common.language.repairs import settled, with_whereabouts
 from common.language.speeches import LONG_SPEECH, as_speech
 from common.language.timing import in_time
 
@@ -112,6 +112,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]
+    whole = with_whereabouts(whole)
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
     return [clause for part in parts for clause in cut_clauses(settled(part, is_place))]
 

@@ -77,13 +77,24 @@ _NOT_THAT_ONE = re.compile(
 )
 _SEVERAL = re.compile(r"\b(?:all|every|everything|any|do|does|did|(?:the|my|those|these) (?:\w+ )?\w+s)\b")
 _SPARABLE = re.compile(rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}")
+_IT_IS = (
+    r"(?:(?:it|they|he|she) (?:is|are|(?:should|must|might|could|ought to|(?:is|are) supposed to) be|"
+    r"lies|stands|lives|sits|hangs)(?: lying| standing| still| somewhere| probably| usually)*|"
+    r"(?:i|we) (?:(?:think|believe|guess) (?:i|we) )?(?:(?:must|might|may) have |have )?(?:just |last )?"
+    r"(?:left|put|saw|dropped|forgot|placed) (?:it|them)) (?P<where>(?:on|in|at|next to|near|beside|under|behind) .+)$"
+)
+_WISH = (
+    r"(?:(?:i|we) (?:would |do |really )*(?:need|want|like|love)(?: to (?:have|use|borrow))?|"
+    r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|use|borrow))"
+)
 _WHERE_IT_IS = re.compile(
-    r"^(?P<said>(?P<asked>\w+ (?:me )?|(?:i|we) (?:need|want) )(?P<thing>(?:the|my|a|an|that) [^,]+?))"
-    r"(?P<here> (?:over |back )?here| to me| to us)?,? "
-    r"(?:it|they|he|she) (?:is|are|(?:should|must|might|could) be|lies|stands|lives|sits|hangs)"
-    r"(?: lying| standing| still| somewhere| probably| usually)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
+    rf"^(?P<said>(?P<asked>(?:{_WISH}|\w+(?: me| us)?) )(?P<thing>(?:the|my|a|an|that) [^,]+?))"
+    rf"(?P<here> (?:over |back )?here| to me| to us)?(?: please)?,? (?:and )?{_IT_IS}"
 )
 """Something to be brought, and where it is."""
+_TO_BRING = re.compile(rf"^(?:{_WISH}|(?:get|fetch|grab|collect|bring)(?: me| us)?|\w+ (?:me|us)) $")
+_WHERE_TOLD = re.compile(rf"^{_IT_IS}")
+_SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
 _THE_OTHER_ONE = re.compile(
     r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
 )
@@ -118,11 +129,6 @@ def settled(text: str, is_place: IsPlace) -> str:
         one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
         text = f"{found['said']}{one_of}"
     text = _without_spared(_SPARED_FIRST.sub(r"\g<said> but \g<spared>", text))
-    found = _WHERE_IT_IS.match(bare := without_politeness(text))
-    if found and not PREPOSITIONS & set(found["thing"].split()):
-        wished = found["asked"].startswith(("i ", "we ")) or found["here"]
-        if wished or verb_first(bare):
-            text = f"{'bring me ' if wished else found['asked']}{found['thing']} {found['where']}"
     if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
         text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
     if (found := _WILL_DO.match(text)) and verb_first(without_politeness(found["said"])):
@@ -137,6 +143,31 @@ def settled(text: str, is_place: IsPlace) -> str:
     bare = without_politeness(text)
     meant = instead(bare) or contrasted(bare)
     return text if meant == bare else meant
+
+
+def with_whereabouts(text: str) -> str:
+    """`can i have the stapler? it is on the desk` as `bring me the stapler on the desk`, also among other sentences."""
+    sentences, said = _SENTENCE.findall(text), list[str]()
+    while sentences:
+        both = f"{sentences[0].rstrip('.?!; ')}, {sentences[1]}" if len(sentences) > 1 else ""
+        if both and _WHERE_TOLD.match(sentences[1]) and (one := _with_place(both)):
+            said, sentences = [*said, one], sentences[2:]
+        else:
+            said, sentences = [*said, _with_place(sentences[0]) or sentences[0]], sentences[1:]
+    return "".join(said)
+
+
+def _with_place(sentence: str) -> str:
+    """What is to be brought, with where it is said to be; "" where that is not said."""
+    told = sentence.rstrip(".?!; ")
+    bare = without_politeness(told)
+    found = _WHERE_IT_IS.match(bare)
+    if found is None or PREPOSITIONS & set(found["thing"].split()):
+        return ""
+    wished = _TO_BRING.match(found["asked"]) or found["here"]
+    if not wished and not verb_first(bare):
+        return ""
+    return f"{'bring me ' if wished else found['asked']}{found['thing']} {found['where']}{sentence[len(told) :]}"
 
 
 def _without_spared(text: str) -> str:

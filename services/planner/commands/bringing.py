@@ -10,7 +10,7 @@ from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
-from services.planner.reference.places import spot
+from services.planner.reference.places import NoSuchPlace, spot
 from services.planner.reference.pronouns import Referent, handled_before
 from services.planner.reference.relations import between
 from services.planner.reference.resolve import referent, referents
@@ -227,6 +227,8 @@ def _surface(builder: PlanBuilder, slots: Slots) -> Receptacle:
     except Refusal as refusal:
         phrase = read(words, builder.vocabulary)
         if isinstance(phrase, Phrase):
+            if phrase.sense.new:
+                raise NoSuchPlace(f"I know no {phrase.noun}") from None
             raise Refusal(f"I cannot put things on or in the {phrase.noun}") from None
         raise refusal from None
     if where.room:

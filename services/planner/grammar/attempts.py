@@ -20,6 +20,7 @@ from services.planner.grammar.sentences import MAX_CHARACTERS, read_text
 from services.planner.grammar.spelling import corrected, renamed
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
+from services.planner.reference.places import NoSuchPlace
 from services.planner.semantic.forms import NONE, tokens
 from services.planner.semantic.parse import parse
 from services.planner.semantic.ranker import rank
@@ -67,7 +68,7 @@ class Attempts:
         try:
             return self._read(self._command)
         except Refusal as refusal:
-            taken = self._choices.taken
+            taken, reason = self._choices.taken, refusal
             others = self._without_more() if isinstance(refusal, Lost) else []
             for text in others:
                 with suppress(Refusal):
@@ -75,22 +76,26 @@ class Attempts:
             if (read := self._without_slips(refusal, literally)) is not None:
                 return read
             for text in (self._command, *others) if self._config.open_vocabulary and isinstance(refusal, Lost) else ():
-                with suppress(Refusal):
+                try:
                     return self._read(text, new_nouns=True)
+                except NoSuchPlace as nowhere:  # a thing may be there that nobody has listed, a place may not
+                    reason = nowhere
+                except Refusal:
+                    continue
             if not literally and (plainer := self._plainer(refusal)):
-                raise Suggestion(str(refusal), plainer) from None
+                raise Suggestion(str(reason), plainer) from None
             self._choices.taken, self._text = taken, self._command
             lost = isinstance(refusal, Lost)
             if (meant := self.guessed()) is None or (not lost and (meant.answers or meant.p < SURE)):
-                raise
+                raise reason from None
             if meant.answers:  # an answer moves nothing, so there is nothing to ask about first
                 return meant.steps
             if literally:
-                raise
+                raise reason from None
             plainly = as_command(meant.steps, self._world) or ", then ".join(meant.texts)
             if self.is_said(plainly):
                 return meant.steps
-            raise Suggestion(str(refusal), plainly) from None
+            raise Suggestion(str(reason), plainly) from None
 
     def _plainer(self, refusal: Refusal) -> str:
         """The plainer words that a refusal knows for all that was said, "" where they cannot be planned."""

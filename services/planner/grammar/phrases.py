@@ -1,9 +1,11 @@
 """Noun phrases: `all the red mugs on the counter` as data. Words in, a phrase out. Pure."""
 
+from itertools import pairwise
 from typing import Literal
 
 import msgspec
 
+from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, without_determiners
 from common.language.noun_phrase import (
     NUMBERS,
@@ -81,6 +83,8 @@ def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     for head, relation, anchor in related(words):
         if relation == "on" and anchor[:1] == ("the",) and anchor[1:2] in (("left",), ("right",)):
             continue  # "the second mug from the left on the desk"
+        if any(one == "and" and other in COMMANDING for one, other in pairwise(anchor)):
+            continue  # "the duck from the counter and bring it here": the next command
         if phrase := _unrelated(head, vocabulary):
             return msgspec.structs.replace(phrase, relation=relation, anchor=anchor, text=" ".join(words))
     return _noun_of(words)

@@ -8,6 +8,10 @@ from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.relations import away
 
 
+class NoSuchPlace(Refusal):
+    """Nothing can be put or looked for there, whatever else is not known."""
+
+
 def spot(builder: PlanBuilder, words: Words) -> Spot:
     """The place that is meant.
 
@@ -22,8 +26,10 @@ def spot(builder: PlanBuilder, words: Words) -> Spot:
     if not found:
         furniture = builder.vocabulary.furniture(words)
         phrase = read(words, builder.vocabulary)
+        if isinstance(phrase, Phrase) and phrase.sense.new and not furniture:
+            raise NoSuchPlace(f"I know no {' '.join(without_determiners(words))}")
         if furniture or isinstance(phrase, Phrase):
-            raise Refusal(f"the {furniture or ' '.join(without_determiners(words))} is no place that I can use")
+            raise NoSuchPlace(f"the {furniture or ' '.join(without_determiners(words))} is no place that I can use")
         raise Lost(f"I know no {' '.join(without_determiners(words))}")
     if len(found) > 1 and wanted is not words:
         return min(found, key=lambda s: away(builder, s))
