@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from common.floor_plan import Box, Receptacle
+from common.floor_plan import Box, Receptacle, Wall
 from common.household import Household, load_household
 from services.camera.sensor import StereoCamera
 from services.perception.segments.segmentation import segments
@@ -81,12 +81,15 @@ def test_objects_are_looked_for_on_beds_and_seats_and_not_where_a_back_stands_on
     assert not any(box.contains(-2.3, 0.2) for box in tops["sofa seat"])
 
 
-TOP = 0.72
-"""Height [m] of a table below the camera."""
+TOP, BACK = 0.72, 1.1
+"""Height [m] of a table below the camera, and how far ahead [m] it ends at a wall."""
 
 
-def table(seed: int, thick: float, level: int = 120) -> View:
-    """A table top, and on it 0.7 m ahead a ruler of that thickness [m], of `level` (of 255) in brightness."""
+def table(
+    seed: int, thick: float, level: int = 120, half: tuple[float, float] = (0.02, 0.09), ahead: float = 0.7
+) -> View:
+    """A table top before a brown wall, and on it a ruler of that thickness and `half` its extents [m], of `level` (of
+    255) in brightness."""
     camera = StereoCamera(seed)
     turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
     u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
@@ -94,8 +97,10 @@ def table(seed: int, thick: float, level: int = 120) -> View:
     down = np.minimum(rays[..., 2], -0.05)
     depth, rgb = (TOP - PLACE[2]) / down, np.full((HEIGHT, WIDTH, 3), level, np.uint8)
     on_top = (TOP + thick - PLACE[2]) / down
-    ruler = (np.abs(rays[..., :2] * on_top[..., None] - (0.7, 0.0)) < (0.02, 0.09)).all(axis=-1)
+    ruler = (np.abs(rays[..., :2] * on_top[..., None] - (ahead, 0.0)) < half).all(axis=-1)
     depth[ruler], rgb[ruler] = on_top[ruler], (level, level // 3, level // 3)
+    wall = np.where(rays[..., 0] > 0.05, BACK / np.maximum(rays[..., 0], 0.05), np.inf)
+    rgb[wall < depth], depth = (level, level // 2, level // 4), np.minimum(depth, wall)
     taken = camera.expose(rgb, depth, FOCAL, seed)
     measured = (taken.depth / 1000.0).astype(np.float32)
     return View(taken.rgb, measured, (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), PLACE, DOWN)
@@ -103,7 +108,9 @@ def table(seed: int, thick: float, level: int = 120) -> View:
 
 def with_a_table() -> Household:
     top = Receptacle(name="table", kind="table", center=(PLACE[0] + 0.75, PLACE[1], TOP), size=(0.7, 1.2))
-    return msgspec.structs.replace(SCENE, receptacles=(top,))
+    x, y = PLACE[0] + BACK + 0.06, PLACE[1]
+    wall = Wall(start=(x, y - 2.0), end=(x, y + 2.0))
+    return msgspec.structs.replace(SCENE, receptacles=(top,), walls=(wall,))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -113,3 +120,10 @@ def test_a_ruler_on_a_table_is_an_object_and_what_is_printed_there_is_none(seed:
     if level == 120:
         (found,) = segments(table(seed, 0.005), with_a_table(), 3.5)
         assert np.ptp(found.points[:, 1]) == pytest.approx(0.18, abs=0.02)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_book_that_touches_the_wall_is_an_object_and_the_foot_of_the_wall_is_none(seed: int) -> None:
+    half = (0.08, 0.1)
+    (found,) = segments(table(seed, 0.03, 90, half, BACK - half[0]), with_a_table(), 3.5)
+    assert np.ptp(found.points[:, 1]) == pytest.approx(0.2, abs=0.02)

@@ -150,10 +150,14 @@ def _on(
         front = plane[0] * beyond.x + plane[1] * beyond.y + plane[2]
         cloud = cloud.joined(beyond.kept(beyond.z > front + CLEARANCE))
     outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
+    by_walls = np.zeros(view.shape, bool)
+    by_walls.ravel()[cloud.pixels] = True
+    cloud = cloud.outside(near.walls)
+    by_walls.ravel()[cloud.pixels] = False
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
     noise = DEVIATIONS * rough * _noise(view, cloud, expected)
     over = (cloud.z > height + np.maximum(noise, least)) & (cloud.z < height + MAX_HEIGHT)
-    kept = cloud.kept(over).outside(near.walls)
+    kept = cloud.kept(over)
     far = view.depth.ravel()[kept.pixels] > FAR
     farther = kept.kept(far).outside(near.far_walls).pixels
     above = np.concatenate([kept.pixels[~far], farther])
@@ -172,7 +176,13 @@ def _on(
         own_parts = [p for p in left if one.shape is not None and is_part(p.points, one.shape)]
         left = [p for p in left if not any(p is part for part in own_parts)]
         whole.append(with_parts(view, one, own_parts))
-    return whole + [p for p in left if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
+    return whole + [p for p in left if not _is_of_furniture(view, p, over_it, by_walls)]
+
+
+def _is_of_furniture(view: View, segment: Segment, over_it: Mask, by_walls: Mask) -> bool:
+    """A segment goes on where no objects are looked for; what is level with it `by_walls` (h, w) is the rest of it."""
+    rest = by_walls & (view.points[..., 2] < segment.points[:, 2].max() + PEAK)
+    return goes_on(view, segment, over_it | rest, CLEARANCE, JUMP) >= GOES_ON
 
 
 def _noise(view: View, cloud: Cloud, surface: Surface) -> NDArray[np.float32]:
