@@ -15,9 +15,10 @@ from common.language.exchange import IsPlace, verb_first
 from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
+from common.language.place_told import with_whereabouts
 from common.language.politeness import without_politeness
 from common.language.preamble import with_preamble
-from common.language.repairs import settled, with_whereabouts
+from common.language.repairs import settled
 from common.language.speeches import LONG_SPEECH, as_speech
 from common.language.timing import in_time
 
@@ -81,6 +82,7 @@ _TOP_OF = re.compile(
     r"\b(?P<on>from|off|on|onto) the (?:very )?(?:top|surface|edge|middle|far end) of (?=(?:the|my|our|that) \w)"
 )
 """Where something lies, said with more words: on the bedroom floor, on the cabinet."""
+_OVER_THERE = re.compile(r"\b(?:over|right|up|down) there (?=(?:on|in|at|next to|near|beside|by|under|behind) )")
 _KEPT = r"(?:goes?|belongs?|lives?|stays?|puts?|keep|kept|have (?:its|their) (?:place|home)|supposed to be)"
 _NOTED = re.compile(
     r"^(?:(?:please|and|so|now|no),? )*(?:(?:do )?(?:remember|note)|(?:keep|bear) in mind|just so you know|"
@@ -109,6 +111,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
     whole = with_shared_noun(whole)
+    whole = _OVER_THERE.sub("", whole)
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]

@@ -77,24 +77,6 @@ _NOT_THAT_ONE = re.compile(
 )
 _SEVERAL = re.compile(r"\b(?:all|every|everything|any|do|does|did|(?:the|my|those|these) (?:\w+ )?\w+s)\b")
 _SPARABLE = re.compile(rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}")
-_IT_IS = (
-    r"(?:(?:it|they|he|she) (?:is|are|(?:should|must|might|could|ought to|(?:is|are) supposed to) be|"
-    r"lies|stands|lives|sits|hangs)(?: lying| standing| still| somewhere| probably| usually)*|"
-    r"(?:i|we) (?:(?:think|believe|guess) (?:i|we) )?(?:(?:must|might|may) have |have )?(?:just |last )?"
-    r"(?:left|put|saw|dropped|forgot|placed) (?:it|them)) (?P<where>(?:on|in|at|next to|near|beside|under|behind) .+)$"
-)
-_WISH = (
-    r"(?:(?:i|we) (?:would |do |really )*(?:need|want|like|love)(?: to (?:have|use|borrow))?|"
-    r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|use|borrow))"
-)
-_WHERE_IT_IS = re.compile(
-    rf"^(?P<said>(?P<asked>(?:{_WISH}|\w+(?: me| us)?) )(?P<thing>(?:the|my|a|an|that) [^,]+?))"
-    rf"(?P<here> (?:over |back )?here| to me| to us)?(?: please)?,? (?:and )?{_IT_IS}"
-)
-"""Something to be brought, and where it is."""
-_TO_BRING = re.compile(rf"^(?:{_WISH}|(?:get|fetch|grab|collect|bring)(?: me| us)?|\w+ (?:me|us)) $")
-_WHERE_TOLD = re.compile(rf"^{_IT_IS}")
-_SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
 _THE_OTHER_ONE = re.compile(
     r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
 )
@@ -115,11 +97,13 @@ _APPOSED = re.compile(
     r"(?P<rest>.+)$"
 )
 """A thing, which one it is, and what is to be done with it."""
+_THE_ONE = re.compile(r"(?<=\w),? the one (?=(?:with|on|in|from|at|next to|near|beside) )")
 _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
+    text = _THE_ONE.sub(" ", text)
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
     text = refined(apposed(_without_lead(text, is_place)))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
@@ -143,31 +127,6 @@ def settled(text: str, is_place: IsPlace) -> str:
     bare = without_politeness(text)
     meant = instead(bare) or contrasted(bare)
     return text if meant == bare else meant
-
-
-def with_whereabouts(text: str) -> str:
-    """`can i have the stapler? it is on the desk` as `bring me the stapler on the desk`, also among other sentences."""
-    sentences, said = _SENTENCE.findall(text), list[str]()
-    while sentences:
-        both = f"{sentences[0].rstrip('.?!; ')}, {sentences[1]}" if len(sentences) > 1 else ""
-        if both and _WHERE_TOLD.match(sentences[1]) and (one := _with_place(both)):
-            said, sentences = [*said, one], sentences[2:]
-        else:
-            said, sentences = [*said, _with_place(sentences[0]) or sentences[0]], sentences[1:]
-    return "".join(said)
-
-
-def _with_place(sentence: str) -> str:
-    """What is to be brought, with where it is said to be; "" where that is not said."""
-    told = sentence.rstrip(".?!; ")
-    bare = without_politeness(told)
-    found = _WHERE_IT_IS.match(bare)
-    if found is None or PREPOSITIONS & set(found["thing"].split()):
-        return ""
-    wished = _TO_BRING.match(found["asked"]) or found["here"]
-    if not wished and not verb_first(bare):
-        return ""
-    return f"{'bring me ' if wished else found['asked']}{found['thing']} {found['where']}{sentence[len(told) :]}"
 
 
 def _without_spared(text: str) -> str:

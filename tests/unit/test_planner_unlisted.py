@@ -53,3 +53,35 @@ def test_a_command_behind_a_place_is_no_part_of_it(said: str) -> None:
 def test_it_is_the_place_that_is_not_known(said: str, place: str) -> None:
     found = understand(Sentence("-", said, "refuse()"))
     assert found.steps == [] and found.reason == f"I know no {place}"
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "please put the duck on the bookshelf, it's on the desk",
+        "put the duck on the bookshelf. It is on the desk right now.",
+        "bring the duck to the bookshelf please, I left it on the desk",
+    ],
+)
+def test_a_thing_is_put_where_it_shall_be_and_taken_from_where_it_is(said: str) -> None:
+    expected = [
+        ("navigate", "desk"),
+        ("find", "duck", "duck from the desk"),
+        ("grasp", "duck"),
+        ("place", "duck", "bookshelf"),
+    ]
+    assert steps(said) == expected
+
+
+@pytest.mark.parametrize(
+    ("said", "description"),
+    [
+        ("I need the duck. can you get it from the study?", "duck from the study"),
+        ("bring me the duck, I think it's in the study", "duck in the study"),
+        ("get me a duck, the one with the red beak", ""),
+        ("bring me the duck over there on the desk", "duck on the desk"),
+    ],
+)
+def test_which_thing_it_is_may_come_late(said: str, description: str) -> None:
+    (found,) = [step for step in steps(said) if step[0] == "find"]
+    assert found[1:] == (("duck", description) if description else ("duck with the red beak",))

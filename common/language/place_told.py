@@ -1,0 +1,69 @@
+"""Where a thing is that is asked for, told in words of its own: `bring me the duck, it is on the desk`. Pure."""
+
+import re
+
+from common.language.exchange import PREPOSITIONS, verb_first
+from common.language.politeness import without_politeness
+
+_IT_IS = (
+    r"(?:(?:(?:(?:i|we) (?:think|believe|guess|reckon)|i am (?:pretty |quite |fairly )?sure)(?: that)? |"
+    r"(?:maybe|perhaps|probably) )?(?:it|they|he|she) "
+    r"(?:is|are|(?:should|must|might|could|ought to|(?:is|are) supposed to) be|lies|stands|lives|sits|hangs)"
+    r"(?: lying| standing| still| somewhere| probably| usually| currently)*|"
+    r"(?:i|we) (?:(?:think|believe|guess) (?:i|we) )?(?:(?:must|might|may) have |have )?(?:just |last )?"
+    r"(?:left|put|saw|dropped|forgot|placed) (?:it|them))"
+)
+_NOW = r"(?: (?:right |just )?now| at the moment)?$"
+_WISH = (
+    r"(?:(?:i|we) (?:would |do |really )*(?:need|want|like|love)(?: to (?:have|use|borrow))?|"
+    r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|use|borrow))"
+)
+_ONE = r"(?P<thing>(?:the|my|a|an|that) [^,]+?)"
+_HERE = r"(?P<here> (?:over |back )?here| to me| to us)?(?: please)?,? (?:and )?"
+_TO_BE_BROUGHT = re.compile(
+    rf"^(?P<asked>(?:{_WISH}|\w+(?: me| us)?) ){_ONE}{_HERE}{_IT_IS} "
+    rf"(?P<where>(?:on|in|at|next to|near|beside|under|behind) [^,]+?){_NOW}"
+)
+"""Something to be brought, and where it is."""
+_BRINGS = re.compile(rf"^(?:{_WISH}|(?:get|fetch|grab|collect|bring)(?: me| us)?|\w+ (?:me|us)) $")
+"""What asks for a thing to be brought, whatever follows it."""
+_TO_BE_PUT = re.compile(
+    r"^(?P<said>(?:put|move|take|bring|carry|set|place|lay) (?:the|my|a|an|that) [^,]+?)"
+    rf"(?P<to> (?:on|in|into|onto|to|next to|beside) [^,]+?)(?: please)?, (?:and )?{_IT_IS} (?:on|at) "
+    rf"(?P<where>[^,]+?){_NOW}"
+)
+"""Something to be put somewhere, and where it is. What is in a room may be that place, and is asked about."""
+_TO_BE_GOT = re.compile(
+    rf"^{_WISH} {_ONE}(?: please)?, (?:get|fetch|grab|bring) (?:me )?it(?: to me| for me)? "
+    r"(?P<where>from [^,]+?)(?: please| for me| to me)*$"
+)
+"""A wish, and from where it is to be fulfilled."""
+_SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
+
+
+def with_whereabouts(text: str) -> str:
+    """`can i have the stapler? it is on the desk` as `bring me the stapler on the desk`, also among other sentences."""
+    sentences, said = _SENTENCE.findall(text), list[str]()
+    while sentences:
+        both = f"{sentences[0].rstrip('.?!; ')}, {without_politeness(sentences[1])}" if len(sentences) > 1 else ""
+        one = _with_place(both) if both and ", " not in both.partition(", ")[2] else ""
+        said.append(one or _with_place(sentences[0]) or sentences[0])
+        sentences = sentences[2 if one else 1 :]
+    return "".join(said)
+
+
+def _with_place(sentence: str) -> str:
+    """What is to be brought or put, with where it is said to be; "" where that is not said."""
+    told = sentence.rstrip(".?!; ")
+    bare, end = without_politeness(told), sentence[len(told) :]
+    if (found := _TO_BE_PUT.match(bare)) and " from " not in found["said"]:
+        return f"{found['said']} from {found['where']}{found['to']}{end}"
+    if found := _TO_BE_GOT.match(bare):
+        return f"bring me {found['thing']} {found['where']}{end}"
+    found = _TO_BE_BROUGHT.match(bare)
+    if found is None or PREPOSITIONS & set(found["thing"].split()):
+        return ""
+    wished = _BRINGS.match(found["asked"]) or found["here"]
+    if not wished and not verb_first(bare):
+        return ""
+    return f"{'bring me ' if wished else found['asked']}{found['thing']} {found['where']}{end}"
