@@ -14,7 +14,8 @@ from common.language.normalise import normalise
 from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
 from common.plan_rules import known_world, objection
 from services.brain.language.choosing import chosen
-from services.brain.language.dialogue import corrected, reply
+from services.brain.language.corrections import corrected
+from services.brain.language.dialogue import reply
 from services.brain.language.interjection import interjection
 from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar

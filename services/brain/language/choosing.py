@@ -5,28 +5,48 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
+from common.language.exchange import PREPOSITIONS
 from common.language.mood import is_asked
 from common.language.normalise import normalise, without_determiners
-from common.language.noun_phrase import WHICH, Which, related
+from common.language.noun_phrase import WHICH, Which
+from common.language.politeness import without_politeness
 from common.language.simplify import simplified
 from common.messages import WorldObject
-from services.brain.language.dialogue import by_wording
-from services.brain.language.offered import UNFIT, beside, likeliest, words_of
+from services.brain.language.dialogue import without_lead
+from services.brain.language.offered import UNFIT, likeliest, marks_of, words_of
 
 _NO_NAME = frozenset({
     "one", "whichever", "of", "them", "those", "these", "will", "with", "go", "the", "please", "that", "this", "mean",
     "i", "want", "is", "take", "bring", "me", "let", "have", "get", "give", "it", "choose", "would", "like", "you",
     "said", "mentioned", "think",
 })  # fmt: skip
-_CARDINALS = ("one", "two", "three", "four", "five")
+_ORDINALS = {
+    "first": 0, "former": 0, "earlier": 0, "1st": 0, "second": 1, "2nd": 1, "third": 2, "3rd": 2, "fourth": 3,
+    "fifth": 4,
+}  # fmt: skip
+_CARDINALS = {w: n for n, w in enumerate(("one", "two", "three", "four", "five"))} | {str(n + 1): n for n in range(5)}
+_SIZES: dict[str, Which] = {
+    "tall": "tallest", "high": "tallest", "short": "shortest", "low": "shortest", "big": "biggest", "large": "biggest",
+    "small": "smallest", "little": "smallest", "tiny": "smallest",
+}  # fmt: skip
+_PEOPLE = frozenset({"fellow", "fella", "guy", "chap", "lad", "beauty", "boy", "thing", "bloke"})
+"""Words for anything at all."""
+_LAST = frozenset({"last", "latter", "later"})
+"""Words for the place in the order of naming."""
+_NAMED_BEFORE = re.compile(
+    r"\b(?:(?:that |which )?you (?:just |have )?(?:named|said|mentioned|offered|listed|read out)"
+    r"|(?:in|on|of|from) (?:your|the) (?:list|row)|(?:out )?of (?:the|those|these|them|your) (?:two|three|pair)"
+    r"|if you (?:do not mind|like|would))\b"
+)
+"""What only says that the options were named before."""
 _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(?=.*\w)")
 """What was said before the words that are meant: `did i say mug? i meant ...`."""
 _SEVERAL = re.compile(
     r"^(?:(?:i want|bring(?: me)?|get(?: me)?|give me|take|well|oh|yes) )*(?:both|all|each)\b(?! the same| right)"
 )
-_WHERE_IT_IS = re.compile(r"^(?:where|what|which)\b.* (?:is|are|stands|lies|belongs)$")
+_WHERE_IT_IS = re.compile(r"^(?:where|what|which)\b.* (?:is|are|stands|lies|lives|sits|belongs|goes)$")
 """A relative clause, which says which one: `where the apple is`."""
-SURE, FIRM = 0.71, 0.95
+SURE, FIRM = 0.68, 0.95
 """Least probability of a choice that no wording makes, and of one where something is passed over (chosen on lists left
 out)."""
 
@@ -64,33 +84,42 @@ def _singled_out(
     answer: str, options: Sequence[str], known: Sequence[WorldObject], household: Household | None
 ) -> str | None:
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
-    bare = " ".join(simplified(tuple(by_wording(answer)[1].split())))
+    plain = without_politeness(normalise(without_lead(answer)))
+    bare = " ".join(simplified(tuple(_NAMED_BEFORE.sub("", plain).split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
-    for n, ordinal in enumerate(("first", "second", "third", "fourth", "fifth")):
-        if words in (
-            {ordinal},
-            {"number", _CARDINALS[n]},
-            {"option", _CARDINALS[n]},
-            {"number", str(n + 1)},
-        ) and n < len(options):
-            return options[n]
-    if words in ({"former"}, {"latter"}) and len(options) == 2:
-        return options[words == {"latter"}]
-    if "last" in words and words <= {"last"}:
-        return options[-1]
+    if (number := _number(words, len(options))) is not None:
+        return options[number]
     if words and (words <= WHICH.keys()) and (extreme := _extreme(WHICH[next(iter(words))], options, known)):
         return extreme
     bare = re.sub(r"\bneither (.+) nor ", r"not \1 not ", bare)
     if "not" in bare.split():
-        parts = (set(part.split()) - _NO_NAME - {"and", "or", "nor"} for part in bare.split("not")[1:])
+        named = (
+            re.split(r"(?<=\w) the ", part.strip())[0] for part in bare.split("not")[1:]
+        )  # not the red the other one
+        parts = (set(part.split()) - _NO_NAME - {"and", "or", "nor"} for part in named)
         excluded = [part for part in parts if part]
         left = [o for o in options if not any(part <= set(o.split()) for part in excluded)]
         return left[0] if len(left) == 1 and excluded else None
-    printed = {o.label: {w for text in (o.text, *o.names) for w in normalise(text).split()} for o in known}
-    matching = [o for o in options if words and words <= set(o.split()) | printed.get(o, set())]
-    if not matching and household is not None:
-        matching = [o for o in options if _stands_where(o, bare, known, household)]
-    return matching[0] if len(matching) == 1 else None
+    marks = [
+        set(o.split()) | {mark for _, mark in (marks_of(o, known, household) if household else ())} for o in options
+    ]
+    names = words - PREPOSITIONS - {"where", "what", "that's", "it's", "on", "got", "has", "is"}
+    sizes = {_SIZES[word] for word in names if word in _SIZES}
+    matching = [o for o, own in zip(options, marks, strict=True) if names and names - _SIZES.keys() - _PEOPLE <= own]
+    if len(sizes) == 1 and len(matching) > 1:
+        return _extreme(sizes.pop(), matching, known)
+    return matching[0] if len(matching) == 1 and not sizes else None
+
+
+def _number(words: set[str], count: int) -> int | None:
+    """Place in the order of naming that words alone tell: `the second`, `option two`, `the last`."""
+    order = next(iter(words - {"number", "option"}), "") if len(words - {"number", "option"}) == 1 else ""
+    if order in _ORDINALS or (len(words) == 2 and order in _CARDINALS):
+        at = (_ORDINALS if order in _ORDINALS else _CARDINALS)[order]
+        return at if at < count else None
+    if order in _LAST and (order == "last" or count == 2):
+        return count - 1
+    return count // 2 if order == "middle" and count % 2 else None
 
 
 def _extreme(which: Which, options: Sequence[str], known: Sequence[WorldObject]) -> str | None:
@@ -101,24 +130,3 @@ def _extreme(which: Which, options: Sequence[str], known: Sequence[WorldObject])
     tall = which in ("tallest", "shortest")
     order = sorted(sizes, key=lambda label: sizes[label][2] if tall else math.prod(sizes[label]))
     return order[-1 if which in ("tallest", "biggest") else 0]
-
-
-def _stands_where(option: str, answer: str, known: Sequence[WorldObject], household: Household) -> bool:
-    """Does the option stand where the answer says, `the one on the counter` or `the one next to the can`?"""
-    for head, relation, anchor in related(tuple(answer.split())):
-        names = set(without_determiners(head)) - _NO_NAME
-        where = " ".join(without_determiners(anchor))
-        if not names <= set(option.split()):
-            continue
-        items = [o for o in known if o.label == option]
-        if relation == "near" and any(where in (o.label, o.kind) for item in items for o in beside(item, known)):
-            return True
-        if relation != "on":
-            continue
-        receptacle = household.receptacle(where)
-        rooms = {r.name for r in household.rooms if where == r.name or where in r.aliases}
-        for item in items:
-            room = household.room_at(item.position[0], item.position[1])
-            if (receptacle and item.on == receptacle.name) or (room is not None and room.name in rooms):
-                return True
-    return False

@@ -29,6 +29,8 @@ UNFIT = frozenset({
     "except", "without", "never", "neither", "anything",
 })  # fmt: skip
 """Words with which an option may be named in order to pass it over."""
+_PRINTED = ("writing", "letters", "print", "printed", "label", "text", "words", "lettering")
+"""Words for what is printed on something."""
 TOLD_APART = 2
 """Options of a higher number are one form (more than three are hardly ever offered)."""
 BESIDE = 0.6
@@ -46,7 +48,7 @@ def options(
     words: Words, offered: Sequence[str], known: Sequence[WorldObject], household: Household, vocabulary: frozenset[str]
 ) -> list[Option]:
     """Every option as the model sees it, and last that nothing is chosen, and that any will do."""
-    marks = [set(_marks(option, known, household)) for option in offered]
+    marks = [set(marks_of(option, known, household)) for option in offered]
     text = " ".join(word for word in words if word != ",")
     likeness = [_likeness(text, option, known, household) for option in offered]
     sizes = [_size(option, known) for option in offered]
@@ -111,7 +113,7 @@ def _names(words: Words, own: dict[str, str], foreign: dict[str, str], known: fr
                 yield f"somewhere before {other} {mark}"
 
 
-def _marks(option: str, known: Sequence[WorldObject], household: Household) -> Iterator[tuple[str, str]]:
+def marks_of(option: str, known: Sequence[WorldObject], household: Household) -> Iterator[tuple[str, str]]:
     """Words by which an option is told, each with what kind of word it is."""
     items = [o for o in known if o.label == option]
     for word in normalise(option).split():
@@ -126,7 +128,12 @@ def _marks(option: str, known: Sequence[WorldObject], household: Household) -> I
     groups = household.words.groups
     for group in (group for group, kinds in groups.items() if any(o.kind in kinds for o in items)):
         yield "use", group.split()[-1]
+    if any(o.text for o in items):
+        yield from (("print", word) for word in _PRINTED)
     receptacle = household.receptacle(option)
+    for other in (o for o in known if receptacle and o.on == receptacle.name):
+        for word in normalise(f"{other.label} {other.text}").split():
+            yield "contents", word
     for part in [receptacle] if receptacle else [r for o in items if (r := household.receptacle(o.on or ""))]:
         for name in _where(part, household):
             for word in name.split():

@@ -7,7 +7,8 @@ from py_trees.common import Status
 from common import messages as m
 from common.language import offers
 from services.brain.language.choosing import chosen
-from services.brain.language.dialogue import Reply, answered, corrected, reply
+from services.brain.language.corrections import answered, corrected
+from services.brain.language.dialogue import Reply, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
