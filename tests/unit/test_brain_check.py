@@ -246,6 +246,14 @@ def test_what_lies_is_said_picked_up_and_put_right() -> None:
     assert said in bench.texts(SPEECH)
 
 
+def test_what_two_pictures_show_lying_is_picked_up_though_a_third_shows_it_standing() -> None:
+    bench = brought()
+    for count, tilt in ((2, LYING), (3, LYING), (4, 0.0)):
+        look(bench, count, tilt=tilt)
+    approach_again(bench, 2)
+    assert bench.manip(3).goal == "grab"
+
+
 def turned(bench: Bench, arrived: bool = True) -> m.NavGoal:
     """Result the turn that follows a look that did not show the object."""
     goal = bench.next_goal(POSE, 2)

@@ -111,7 +111,8 @@ class TurnAside(SendGoal):
 
 
 class AlreadyInPlace(Leaf):
-    """SUCCESS when the object, as it was found, is already where it belongs."""
+    """SUCCESS when the object, as it was found, is already where it belongs; what two pictures have shown lying
+    does not stand up by itself."""
 
     def __init__(self, node_id: str, ctx: Context, item: str, target: str, near: str = "") -> None:
         super().__init__(node_id, ctx)
@@ -121,6 +122,8 @@ class AlreadyInPlace(Leaf):
         ctx, pose = self.ctx, self.ctx.mission.search.found.get(self._item)
         label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
+            return Status.FAILURE
+        if ctx.mission.failure is not None and ctx.mission.failure.code == "TOPPLED":
             return Status.FAILURE
         finding = _judged(ctx, pose, self._target, self._near)
         if finding.fault:
