@@ -41,8 +41,8 @@ _NO_TOY = "".join(
 """Not behind what makes a figure of a robot or a man."""
 _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
-    r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
-    r"able|not busy|up for it|around|there))"
+    r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|done|"
+    r"finished|able|not busy|up for it|around|there))"
     r"|if (?:it is |that is )?(?:not |no )?(?:too (?:hard|difficult|"
     r"much(?: (?:trouble|bother|hassle|of a \w+|to ask))?)|(?:an? |any )?(?:bother|trouble|problem|hassle|imposition)|"
     r"asking too much|possible|"

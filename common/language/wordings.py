@@ -192,7 +192,8 @@ WORDINGS: tuple[Wording, ...] = (
         "(come | go | drive | get) [yourself] [on] [over] (here | back [here] [to me])"
         " | (come | go | return | head) [back] [to] where ((i am | we are) [sitting | standing | lying] | you (started"
         " | came from)) | over here | here to me | to me | this way | come | home | back [here | to me | home]"
-        " | return [home | here | to (start | me | base)] | [go [and]] (park | dock) [up] [yourself] [for now]"
+        " | return [home | here | to (start | me | base)] | [go [home | back] [and]] (park | dock |"
+        " charge | recharge) [up] [yourself] [for now]"
         " | [off | shoo | (go | get | drive | head | roll) [back] | (go [and] (sit | stand | wait)) | back] (to | in)"
         " your [own] (spot | corner | place | dock | station | charger | nest | (charging | parking | docking) (station"
         " | spot | place | bay)) | (come | go | drive) [back] home",

@@ -122,6 +122,8 @@ def test_fetching(command: str) -> None:
         ("go to the red mug", "find red mug; navigate red mug"),
         ("come back", "return"),
         ("go home", "return"),
+        ("go home and charge", "return"),
+        ("recharge", "return"),
         ("drive to the dock", "return"),
         ("wait here", "wait"),
         ("say hello, my friend", "say Hello, my friend."),

@@ -30,3 +30,7 @@ def test_a_thing_is_looked_for_where_it_was_said_to_be(said: str, thing: str, de
 def test_a_thought_is_no_thing() -> None:
     found = planned("i can't find my glasses case, i think it's by the bed, can you bring it here")
     assert {step.object for step in found.steps if step.object} == {"glasses case"}
+
+
+def test_done_is_no_place() -> None:
+    assert [step.target for step in planned("put the apple on the desk when you are done").steps][-1] == "desk"
