@@ -29,7 +29,7 @@ _BRINGS = re.compile(rf"^(?:{_WISH}|(?:get|fetch|grab|collect|bring)(?: me| us)?
 """What asks for a thing to be brought, whatever follows it."""
 _TO_BE_PUT = re.compile(
     r"^(?P<said>(?:put|move|take|bring|carry|set|place|lay) (?:the|my|a|an|that) [^,]+?)"
-    rf"(?P<to> (?:on|in|into|onto|to|next to|beside) [^,]+?)(?: please)?, (?:and )?{_IT_IS} (?:on|at) "
+    rf"(?P<to> (?:on|in|into|onto|to|next to|beside) [^,]+?)(?: please)?,? (?:and )?{_IT_IS} (?:on|at) "
     rf"(?P<where>[^,]+?){_NOW}"
 )
 """Something to be put somewhere, and where it is. What is in a room may be that place, and is asked about."""

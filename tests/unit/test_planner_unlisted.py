@@ -61,6 +61,7 @@ def test_it_is_the_place_that_is_not_known(said: str, place: str) -> None:
         "please put the duck on the bookshelf, it's on the desk",
         "put the duck on the bookshelf. It is on the desk right now.",
         "bring the duck to the bookshelf please, I left it on the desk",
+        "put the duck on the bookshelf it is on the desk",
     ],
 )
 def test_a_thing_is_put_where_it_shall_be_and_taken_from_where_it_is(said: str) -> None:
