@@ -8,6 +8,7 @@ import pytest
 
 from common.geometry import Array
 from common.household import load_household
+from common.messages import ShapeFamily
 from services.perception.detection import Detection
 from services.perception.tracking.object_tracker import ObjectTracker
 from services.perception.tracking.registration import shift
@@ -53,11 +54,11 @@ def both(shape: str) -> tuple[Array, View, Array]:
     return believed + OFF, view, seen
 
 
-def detection(points: Array, distance: float) -> Detection:
+def detection(points: Array, distance: float, shape: ShapeFamily = "box") -> Detection:
     x, y, z = (float(v) for v in points.mean(axis=0))
     return Detection(
         label="", kind="box", colour="red", position=(x, y, z), yaw=0.0, size=(0.03, 0.03, 0.03), confidence=0.9,
-        on="counter", distance=distance, known=False, whole=False, shape="box", kinds={"box": 1.0}, points=points,
+        on="counter", distance=distance, known=False, whole=False, shape=shape, kinds={"box": 1.0}, points=points,
     )  # fmt: skip
 
 
@@ -88,3 +89,22 @@ def test_the_wrist_camera_moves_what_nobody_listed_and_changes_nothing_else_of_i
     share = float(moved[:2] @ -OFF[:2]) / float(OFF[:2] @ OFF[:2])
     assert 0.6 < share < 0.9 and math.dist(moved[:2], share * -OFF[:2]) < 0.0015 and moved[2] == 0.0
     assert (after.size, after.kinds, after.shape, after.seen_at) == (before.size, before.kinds, before.shape, 2.0)
+
+
+@pytest.mark.parametrize(("taken_for", "things"), [("irregular", 2), ("box", 1)])
+def test_what_was_taken_for_one_without_a_shape_is_the_things_that_the_wrist_camera_shows(
+    taken_for: ShapeFamily, things: int
+) -> None:
+    block, can = (f'<geom type="{kind}" pos="0 {y} .03"' for kind, y in (("box", 0.035), ("cylinder", -0.035)))
+    believed, view, seen = both(f'{block} size=".03 .03 .03"/>{can} size=".03 .03"/>')
+    aside = seen @ (-math.sin(math.radians(25)), math.cos(math.radians(25)), 0.0)
+    parts = [detection(seen[aside > 0.004], 0.25), detection(seen[aside < -0.004], 0.25, "round")]
+    tracker = ObjectTracker(load_household("apartment"), 3, 0.3)
+    whole = detection(believed, 1.05, taken_for)
+    for n in range(2):
+        tracker.update(looking(STAPLER, np.array([0.0, 0.0, 0.9]), np.zeros(3) + 0.01, "head", 250.0)[0], [whole], n)
+    for n in range(2):
+        tracker.update(view, parts, 2.0 + n)
+    found = tracker.objects()
+    assert len(found) == things
+    assert things == 1 or {o.shape for o in found} == {"box", "round"}

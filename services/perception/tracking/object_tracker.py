@@ -12,7 +12,7 @@ from common.messages import WorldObject
 from services.perception.detection import Detection
 from services.perception.tracking.association import moved_here, overlap, separation, should_show
 from services.perception.tracking.descriptor import shares
-from services.perception.tracking.track import SURE, Track, aim, see
+from services.perception.tracking.track import SURE, Track, aim, see, several, shown
 from services.perception.views.view import View
 
 CERTAIN = 0.8
@@ -41,8 +41,8 @@ class ObjectTracker:
         free = [t for t in self._tracks if not t.held]
         seen: set[str] = set()
         if view.camera == "wrist":
-            seen = {t.id for t in free if not t.known and aim(t, view, detections, now)}
-            detections = [d for d in detections if d.known]
+            seen, detections = self._take_near(view, detections, now)
+            free = [t for t in free if t in self._tracks]
         pairs = sorted(
             (apart, n, k)
             for n, d in enumerate(detections)
@@ -76,6 +76,19 @@ class ObjectTracker:
                 heir.id, heir.label, heir.began, track.misses = track.id, track.label, track.began, self._gone_after
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
+
+    def _take_near(self, view: View, detections: Sequence[Detection], now: float) -> tuple[set[str], list[Detection]]:
+        """Where the hand's own camera shows objects that nobody listed: ids of those; and what is left of its view."""
+        seen, left = set(), [d for d in detections if d.known]
+        for track in [t for t in self._tracks if not t.held]:
+            found = shown(track, view, detections)
+            if things := several(track, found):
+                self._tracks.remove(track)
+                left += things
+            elif found:
+                aim(track, *found[0], now)
+                seen.add(track.id)
+        return seen, left
 
     def carry(self, hand: Vec3, holding: bool, now: float, working: bool = False) -> bool:
         """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from common.floor_plan import Vec3
+from common.geometry import Array
 from services.perception.detection import Detection
 from services.perception.tracking.descriptor import Descriptor
 from services.perception.tracking.registration import shift
@@ -140,15 +141,25 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
         track.size, track.tilt = (d.size if d.known else track.looks.size), d.tilt
 
 
-def aim(track: Track, view: View, detections: Sequence[Detection], now: float) -> bool:
-    """Take from a view at `now` [s] where an object that nobody listed is, by whatever part of it that shows, and
-    nothing else; True when it does."""
+def shown(track: Track, view: View, detections: Sequence[Detection]) -> list[tuple[Array, Detection]]:
+    """What a near view shows of an object that nobody listed, with how far (3,) [m] that is from where it is believed
+    to be, the nearest first."""
+    if track.known:
+        return []
     believed, reach = track.looks.points + np.array(track.position), max(track.size) / 2 + MOVED
     near = [d for d in detections if not d.known and math.dist(d.position, track.position) < reach]
-    found = [(shift(believed, d.points, view), d) for d in near]
-    by, d = min(found, key=lambda f: math.inf if f[0] is None else float(np.linalg.norm(f[0])), default=(None, None))
-    if by is None or d is None:
-        return False
+    found = [(by, d) for d in near if (by := shift(believed, d.points, view)) is not None]
+    return sorted(found, key=lambda one: float(np.linalg.norm(one[0])))
+
+
+def several(track: Track, found: Sequence[tuple[Array, Detection]]) -> list[Detection]:
+    """The things of which a near view shows that what was taken for one without a shape is; empty where it is one."""
+    shaped = [d for _, d in found if d.shape != "irregular"]
+    return shaped if track.looks.shape == "irregular" and len(shaped) > 1 else []
+
+
+def aim(track: Track, by: Array, d: Detection, now: float) -> None:
+    """Take from a near view at `now` [s] where an object is, by whatever part of it that shows, and nothing else."""
     x, y, z = track.position
     was, new = mount_error(track.looks.nearest), mount_error(d.distance)
     share = 1.0 / (1.0 + (new / was) ** 2)
@@ -158,7 +169,6 @@ def aim(track: Track, view: View, detections: Sequence[Detection], now: float) -
     track.weight = track.best = max(track.weight, weight_from(d.distance))
     track.seen_at = track.looked_at = now
     track.misses, track.sightings = 0, track.sightings + 1
-    return True
 
 
 def mount_error(distance: float) -> float:
