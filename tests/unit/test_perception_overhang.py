@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from common.floor_plan import Vec3
 from common.household import Household, load_household, told
 from common.rendering.raycast import render
 from common.scene import ObjectSpec, load_scene
@@ -22,16 +23,19 @@ WIDTH, HEIGHT, FOVY = 400, 300, 62.0
 LENGTH, THICK = 0.16, 0.05
 
 
-def seen_with_box(over: float) -> tuple[View, Household, tuple[float, float, float]]:
+FLAT: Vec3 = (LENGTH, 0.11, THICK)
+
+
+def seen_with_box(over: float, size: Vec3 = FLAT) -> tuple[View, Household, tuple[float, float, float]]:
     """The kitchen table with a flat box that reaches `over` its free edge by so much [m], from before that."""
     plan = load_scene("apartment")
     table = plan.surface("kitchen table")
     assert table is not None
     x, y, z = table.center
     edge = x - table.size[0] / 2
-    at = (edge + LENGTH / 2 - over, y)
+    at = (edge + size[0] / 2 - over, y)
     box = ObjectSpec(
-        name="box", kind="block", colour="red", size=(LENGTH, 0.11, THICK), mass=0.2, rgba=(0.8, 0.1, 0.1, 1.0),
+        name="box", kind="block", colour="red", size=size, mass=0.2, rgba=(0.8, 0.1, 0.1, 1.0),
         position=at, yaw=0.0, on="kitchen table",
     )  # fmt: skip
     scene = msgspec.structs.replace(plan, objects=(box,))
@@ -50,7 +54,7 @@ def seen_with_box(over: float) -> tuple[View, Household, tuple[float, float, flo
         rgb=rgb, depth=depth.astype(np.float32), focal=(focal, focal), middle=(WIDTH / 2, HEIGHT / 2),
         position=position, rotation=rotation,
     )  # fmt: skip
-    return view, msgspec.structs.replace(told(scene), things=()), (*at, z + THICK / 2)
+    return view, msgspec.structs.replace(told(scene), things=()), (*at, z + size[2] / 2)
 
 
 @pytest.mark.parametrize(("over", "low"), [(0.0, 0.0), (0.03, 0.0), (0.07, 0.0), (0.05, 0.008)])
@@ -61,6 +65,14 @@ def test_it_is_measured_as_a_whole_though_all_is_seen_lower_than_it_is(over: flo
     assert len(found) == 1
     assert math.dist(found[0].position[:2], at[:2]) < 0.012
     assert found[0].size == pytest.approx((LENGTH, 0.11, THICK), abs=0.015)
+
+
+@pytest.mark.parametrize(("high", "seen"), [(0.33, True), (0.6, False)], ids=["a tall bottle", "a post"])
+def test_what_is_slim_and_tall_is_seen_to_its_top(high: float, seen: bool) -> None:
+    view, household, at = seen_with_box(-0.1, (0.075, 0.075, high))
+    found = [d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "kitchen table"]
+    assert [pytest.approx(high, abs=0.01)] * seen == [d.size[2] for d in found]
+    assert all(math.dist(d.position, at) < 0.02 for d in found)
 
 
 def test_what_stands_beside_the_surface_is_not_on_it() -> None:

@@ -1,7 +1,7 @@
 """A segment of a view, and what the pixels around it say: something hides a part of it, or it goes on. Pure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,11 @@ class Segment:
     dark: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
     shape: Measurement | None = None
 
+    @property
+    def top(self) -> float:
+        """Its height [m] over the surface."""
+        return float(self.points[:, 2].max()) - self.surface.height
+
 
 def renumbered(names: NDArray[np.intp]) -> NDArray[np.intp] | None:
     """Names of pieces (n,) as numbers from 0 on; None where there is but one piece."""
@@ -82,6 +87,24 @@ def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: 
         much(slice(None), HIDDEN),
         much(slice(0, first + RIM), HIDDEN_END),
         much(slice(last + 1 - RIM, None), HIDDEN_END),
+    )
+
+
+def with_top(view: View, segment: Segment, own: Mask, low: float, high: float) -> Segment:
+    """A segment with what the picture shows right above it, from `low` to `high` [m, map]; `own` (h, w): the robot."""
+    (left, near), (right, far) = segment.points[:, :2].min(axis=0), segment.points[:, :2].max(axis=0)
+    columns = slice(int(segment.columns.min()), int(segment.columns.max()) + 1)
+    x, y, z = np.moveaxis(view.points[: int(segment.rows.max()), columns], -1, 0)
+    over = (x >= left) & (x <= right) & (y >= near) & (y <= far) & (z >= low) & (z < high)
+    over &= (view.depth[: over.shape[0], columns] > 0) & ~own[: over.shape[0], columns]
+    over[segment.rows[segment.rows < over.shape[0]], segment.columns[segment.rows < over.shape[0]] - columns.start] = (
+        False
+    )
+    rows, across = np.nonzero(over)
+    across = across + columns.start
+    points = np.concatenate([segment.points, view.points[rows, across].astype(np.float64)])
+    return replace(
+        segment, rows=np.append(segment.rows, rows), columns=np.append(segment.columns, across), points=points
     )
 
 

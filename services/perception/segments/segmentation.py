@@ -15,15 +15,18 @@ from services.perception.segments.flat import patches
 from services.perception.segments.floor import SEARCH, layers
 from services.perception.segments.outlined import is_part, on_surface, with_parts
 from services.perception.segments.parts import JUMP, between_jumps, joined
-from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
+from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on, with_top
 from services.perception.views.view import View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
 
 CLEARANCE, THIN = 0.008, 0.003
 """Height [m] above a surface from which points belong to objects, and above one whose slopes are measured, where noise
 does not reach as high. Chosen: twice the depth noise at 1.5 m; a comb's thickness is 0.004."""
-MAX_HEIGHT = 0.30
-"""Height [m] above a surface up to which points belong to objects. Chosen: above the tallest bottle."""
+MAX_HEIGHT, TALLEST, SLIM = 0.30, 0.45, 0.16
+"""Height [m] above a surface up to which points belong to objects, and up to which they do over what is no wider than
+that [m]. Chosen: above most; above a bottle of wine; what a hand spans twice."""
+REACHES = 0.01
+"""Distance [m] from that height within which something goes on beyond it."""
 PLANE_SEARCH = 0.025
 """How far [m] from the floor plan's height the surface itself is looked for. Chosen: errors of camera pose and
 furniture."""
@@ -170,7 +173,8 @@ def _on(
     cut = between_jumps(view, rows, columns, MIN_PIXELS // 3)
     over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
-    left = [p for p in joined(view, expected.name, plane, cut, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
+    parts = [_to_its_top(view, p, own) for p in joined(view, expected.name, plane, cut, own, dark)]
+    left = [p for p in parts if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
     whole = []
     for one in outlined:
         own_parts = [p for p in left if one.shape is not None and is_part(p.points, one.shape)]
@@ -223,10 +227,18 @@ def _plane(view: View, cloud: Cloud, expected: Surface) -> tuple[Array, float, f
     return plane, THIN, max(1.0, float(np.percentile(off, ONE_DEVIATION)))
 
 
+def _to_its_top(view: View, segment: Segment, own: Mask) -> Segment:
+    """What is slim and reaches as high as objects are looked for, with what is seen of it above."""
+    floor = segment.surface.height
+    if segment.top < MAX_HEIGHT - REACHES or extent(segment) >= SLIM:
+        return segment
+    return with_top(view, segment, own, floor + MAX_HEIGHT - REACHES, floor + TALLEST)
+
+
 def _is_thing(segment: Segment) -> bool:
     """Neither as wide as furniture nor reaching up like a wall; it may be several objects that touch."""
-    top = float(segment.points[:, 2].max()) - segment.surface.height
-    return extent(segment) < CROWD_EXTENT and top < MAX_HEIGHT - 0.01
+    high = TALLEST if extent(segment) < SLIM else MAX_HEIGHT
+    return extent(segment) < CROWD_EXTENT and segment.top < high - REACHES
 
 
 def extent(segment: Segment) -> float:
