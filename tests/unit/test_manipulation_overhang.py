@@ -13,6 +13,7 @@ from common.messages import WorldObject
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.grasps.target import Target
@@ -98,6 +99,19 @@ def test_the_pads_alone_meet_what_is_pulled_however_the_hand_leans() -> None:
         corners = [(x, 0.0, -PADS_END) for x in (-LINKS_HALF, LINKS_HALF)]
         lowest.append(min(float((hand.position + hand.rotation @ corner)[2]) for corner in corners))
     assert min(lowest) > HEIGHT + 0.05
+
+
+@pytest.mark.parametrize("thick", [0.015, 0.04])
+def test_on_a_surface_as_high_as_the_elbow_a_hand_that_leans_more_pulls(thick: float) -> None:
+    top = 0.9
+    edge = facing_edge(structs.replace(TABLE, center=(0.68, 0.0, top)), (0.0, 0.0, 0.0))
+    assert edge is not None
+    lies = Target("bat", "book", (0.5, 0.02, top + thick / 2), 0.2, (0.145, 0.138, thick), shape="box")
+    plan = plan_pull(PLANNER, lies, edge, [Obstacle((0.68, 0.0, top - 0.07), (0.6, 1.2, 0.14))], ARM.home.copy(), 0.1)
+    for q in plan.pull:
+        hand = ARM.pose(q)
+        tip = min(float((hand.position + hand.rotation @ (x, 0.0, PAD))[2]) for x in (-PAD_HALF, PAD_HALF))
+        assert top < tip < top + thick - 0.002, "no finger is drawn up over it"
 
 
 def test_what_stands_in_the_way_is_not_pushed_down() -> None:
