@@ -12,6 +12,7 @@ from common.messages import WorldObject
 from common.naming.names import match_object
 from services.perception.detection import Detection
 from services.perception.grounding import may_be_meant
+from services.perception.tracking import object_tracker
 from services.perception.tracking.object_tracker import ObjectTracker
 from services.perception.views.view import View
 
@@ -68,6 +69,16 @@ def test_of_two_that_take_up_one_space_the_one_that_is_told_of_stands_for_the_ot
     (only,) = tracker.objects()
     assert only.id != first[0].id and tracker.told_as(first[0].id) == only.id == tracker.told_as(only.id)
     assert tracker.told_as("object-9") == "object-9"
+
+
+def test_what_is_seen_where_another_was_lost_stands_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    tracker, first = seen([sighting(4.0, -3.0, CAN, BLUE)], [sighting(4.0, -3.0, CAN, BLUE)])
+    monkeypatch.setattr(object_tracker, "should_show", lambda track, view: True)
+    for n in (3, 4, 5):
+        tracker.update(looking(0.0, 0.0), [], float(n))
+    assert tracker.objects() == [] and tracker.told_as(first[0].id) == first[0].id
+    tracker.update(looking(0.0, 0.0), [sighting(4.02, -3.0, CAN, RED)], 6.0)
+    assert tracker.told_as(first[0].id) == tracker.objects()[0].id != first[0].id
 
 
 def test_a_label_stays_until_another_kind_is_much_likelier() -> None:

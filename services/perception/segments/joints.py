@@ -5,6 +5,7 @@ from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from services.perception.segments.segment import Segment, renumbered
 from services.perception.views.view import View
@@ -19,9 +20,9 @@ THREAD = 0.05
 """The same, up to which it is one whatever the step: what hides a part of another does so along a side."""
 STEP, STEP_NOISE = 0.006, 2.0
 """Step of depth [m] at that line, plus that of noise, up to which one goes on in the other."""
-RINGED = 0.6
-"""The same, from which a piece is within another that no shape explains and stands over it, and is of it: the lens of a
-magnifying glass. Chosen: depth is missing along up to a third of its rim."""
+RINGED, RIM = 0.6, 2
+"""Share of the band of that width [pixels] around a piece from which it is within another that no shape explains and
+stands over it, and is of it: the lens of a magnifying glass. Chosen: the far side of its rim is hidden."""
 ALL_ALONG = 0.75
 """Share of that line on which there is no such step, from which a piece that has no shape of its own belongs to the
 other. Chosen: a wooden handle that runs round the red of its bat does; what lies on another or behind it steps down."""
@@ -55,7 +56,14 @@ def jointed(
             some = 0.25 if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
             level = np.mean(meet < STEP + STEP_NOISE * noise) >= some if len(meet) else False
             inner, outer = sorted((a, b), key=lambda n: outline[n])
-            ringed = outer in shapeless and share > RINGED and tops[inner] < tops[outer]
+            ringed = outer in shapeless and tops[inner] < tops[outer] and _around(numbers, inner, outer) > RINGED
             if level or ringed or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
     return renumbered(names[cut])
+
+
+def _around(numbers: NDArray[np.intp], inner: int, outer: int) -> float:
+    """Share of the band around one piece that is of another; between the two depth may be missing."""
+    own = numbers == inner
+    band = ndimage.binary_dilation(own, iterations=RIM) & ~own
+    return float(np.mean(ndimage.binary_dilation(numbers == outer, iterations=RIM)[band]))

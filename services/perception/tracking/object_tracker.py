@@ -1,6 +1,7 @@
 """Object tracks over time: seen, seen again, moved, grasped, gone. Pure."""
 
 import math
+from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
@@ -24,6 +25,8 @@ DOUBT = 0.45
 FALLEN = 0.15
 """Height [m] above where it would rest from which what leaves the hand falls. Chosen: a tall bottle that is put down
 is held 0.08 above its middle."""
+LOST = 20
+"""Tracks that are remembered after they were lost [count]. Chosen: more than a person confirms in one mission."""
 FRESH = 20.0
 """For how long [s] an object is new. Chosen: from when the hand begins to move one until all of the place is seen."""
 
@@ -34,6 +37,7 @@ class ObjectTracker:
     def __init__(self, household: Household, gone_after: int, min_confidence: float) -> None:
         self._household, self._gone_after, self._min = household, gone_after, min_confidence
         self._tracks: list[Track] = []
+        self._lost: deque[Track] = deque(maxlen=LOST)
         self._count = 0
 
     def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
@@ -74,6 +78,7 @@ class ObjectTracker:
             if heir is not None:
                 # It was seen elsewhere before it could be seen that it is gone.
                 heir.id, heir.label, heir.began, track.misses = track.id, track.label, track.began, self._gone_after
+        self._lost.extend(t for t in self._tracks if t.misses >= self._gone_after)
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
 
@@ -128,9 +133,13 @@ class ObjectTracker:
         return [_as_object(t, label) for t, label in _labelled(sorted(self._told(since), key=_age))]
 
     def told_as(self, key: str) -> str:
-        """Id of what is told of where the object with that id is: of two that take up the same space one is."""
-        meant, told = [t for t in self._tracks if t.id == key], self._told(-math.inf)
-        return next((t.id for own in meant if own not in told for t in told if overlap(t, own)), key)
+        """Id of what is told of where the object with that id is, or was until it was seen as another: of two that take
+        up the same space one is."""
+        told = self._told(-math.inf)
+        if not key or any(t.id == key for t in told):
+            return key
+        meant = [t for t in (*self._tracks, *self._lost) if t.id == key]
+        return next((t.id for own in meant for t in told if overlap(t, own)), key)
 
     def _told(self, since: float) -> list[Track]:
         sure = [t for t in self._tracks if (t.confidence >= self._min or t.held) and t.looked_at >= since]
