@@ -71,6 +71,18 @@ def test_of_two_that_take_up_one_space_the_one_that_is_told_of_stands_for_the_ot
     assert tracker.told_as("object-9") == "object-9"
 
 
+@pytest.mark.parametrize(("high", "one"), [(0.008, True), (0.04, False)], ids=["its handle", "lies on it"])
+def test_what_lies_flat_within_another_is_a_part_of_it(high: float, one: bool) -> None:
+    def flat(x: float, size: tuple[float, float, float], colours: dict[str, float]) -> Detection:
+        lies = sighting(x, -3.0, {"tool": 1.0}, colours)
+        return replace(lies, size=size, position=(x, -3.0, 0.76 + size[2] / 2), shape="box")
+
+    glass, handle = flat(4.0, (0.18, 0.07, 0.02), RED), flat(4.07, (0.05, 0.02, high), BLUE)
+    tracker, objects = seen([glass], [handle, glass], [handle, glass])
+    assert len(objects) == 2 - one
+    assert (tracker.told_as("object-2") == "object-1") is one
+
+
 def test_what_is_seen_where_another_was_lost_stands_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
     tracker, first = seen([sighting(4.0, -3.0, CAN, BLUE)], [sighting(4.0, -3.0, CAN, BLUE)])
     monkeypatch.setattr(object_tracker, "should_show", lambda track, view: True)

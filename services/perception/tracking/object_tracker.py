@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from common.floor_plan import Vec3
-from common.geometry import yaw_quat
+from common.geometry import Rectangle, yaw_quat
 from common.household import Household
 from common.messages import WorldObject
 from services.perception.detection import Detection
@@ -25,6 +25,9 @@ DOUBT = 0.45
 FALLEN = 0.15
 """Height [m] above where it would rest from which what leaves the hand falls. Chosen: a tall bottle that is put down
 is held 0.08 above its middle."""
+LOW, ABOVE = 0.045, 0.005
+"""Height [m] up to which a thing lies flat, and how much higher than it what lies on it is. Chosen: as `joints.LOW` has
+it; half a pencil."""
 LOST = 20
 """Tracks that are remembered after they were lost [count]. Chosen: more than a person confirms in one mission."""
 FRESH = 20.0
@@ -139,7 +142,7 @@ class ObjectTracker:
         if not key or any(t.id == key for t in told):
             return key
         meant = [t for t in (*self._tracks, *self._lost) if t.id == key]
-        return next((t.id for own in meant for t in told if overlap(t, own)), key)
+        return next((t.id for own in meant for t in told if overlap(t, own) or _is_part(own, t)), key)
 
     def _told(self, since: float) -> list[Track]:
         sure = [t for t in self._tracks if (t.confidence >= self._min or t.held) and t.looked_at >= since]
@@ -160,11 +163,21 @@ class ObjectTracker:
             told = track.held or track.sightings > 1 or track.confidence >= CERTAIN
             if told and not any(overlap(track, other) for other in chosen):
                 chosen.append(track)
-        return chosen
+        return [t for t in chosen if t.held or not any(_is_part(t, other) for other in chosen)]
 
     def doubtful(self) -> set[str]:
         """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
         return {t.id for t in self._tracks if not t.held and not t.known and t.clearest < DOUBT}
+
+
+def _is_part(track: Track, other: Track) -> bool:
+    """What nobody listed and lies flat within the outline of something larger that does so, and not on it, is a part of
+    that, seen by itself: the lens of a magnifying glass, its handle."""
+    (x, y, z), (length, width, high) = other.position, other.size
+    if track.known or other.known or high > LOW or width * length <= track.size[0] * track.size[1]:
+        return False
+    on_top = track.position[2] + track.size[2] / 2 > z + high / 2 + ABOVE
+    return not on_top and Rectangle(x, y, length, width, other.yaw).contains(*track.position[:2])
 
 
 def _age(track: Track) -> int:
