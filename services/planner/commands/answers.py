@@ -5,7 +5,7 @@ from common.language.normalise import Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS, WHICH, related
 from common.language.pattern import Slots
 from common.messages import PlanStep
-from services.planner.commands.telling import MANY, a, be, capital, not_after_moving, place_of
+from services.planner.commands.telling import a, be, capital, not_after_moving, place_of
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import ANY, Sense
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
@@ -89,23 +89,6 @@ def _all_meant(builder: PlanBuilder, slots: Slots) -> list[Referent]:
     meant = referents(builder, slots["thing"], prefer_held=True)
     several = [t for t in builder.world.objects if t.kind == meant[0].object.label != t.label]
     return referents(builder, ("all", *without_determiners(slots["thing"]))) if len(meant) == 1 and several else meant
-
-
-def number(builder: PlanBuilder, slots: Slots) -> None:
-    """How many of a kind are known; a count of all of them is the same after some have been moved."""
-    if "spot" in slots:
-        not_after_moving(builder)
-    words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
-    phrase = read(words, builder.vocabulary)
-    if not isinstance(phrase, Phrase):
-        raise unknown(builder, words, phrase)
-    try:
-        known = [m.object for m in referents(builder, ("all", *words)) if m.object.seen]
-    except Refusal:
-        known = []
-    noun = (phrase.singular or phrase.noun) if len(known) == 1 else phrase.noun
-    names = f": {enumeration([f'the {t.label}' for t in known])}" if 0 < len(known) <= MANY else ""
-    builder.say(f"I know of {len(known) or 'no'} {noun}{names}.")
 
 
 def colour(builder: PlanBuilder, slots: Slots) -> None:

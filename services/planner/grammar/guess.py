@@ -88,10 +88,13 @@ def _answer(words: Words, builder: PlanBuilder) -> str:
 def _likely(words: Words, builder: PlanBuilder) -> list[str]:
     """The likeliest plain questions that the words may come to, those first that leave the fewest names aside.
 
-    One that names nothing has to be as likely as any guess.
+    One that names nothing has to be as likely as any guess, and the words name nothing either.
     """
+    names = bool(chunks(words, builder.vocabulary, pronouns=True))
     ranked = [
-        r for r in rank(words, builder.vocabulary) if r.candidate.kind == "ask" and (r.candidate.roles or r.p > LEAST)
+        r
+        for r in rank(words, builder.vocabulary)
+        if r.candidate.kind == "ask" and (r.candidate.roles or (r.p > LEAST and not names))
     ]
     return [r.candidate.text for r in sorted(ranked, key=lambda r: -len(r.candidate.roles))[:MOST]]
 

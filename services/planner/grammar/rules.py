@@ -15,6 +15,7 @@ from services.planner.commands import (
     hand,
     home,
     looking,
+    query_forms,
     remarks,
     tidying,
 )
@@ -28,7 +29,6 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "holding": answers.holding,
     "whereabouts": answers.whereabouts,
     "where": answers.where,
-    "number": answers.number,
     "say": going.say,
     "wait": going.wait,
     "count": going.count,
@@ -112,6 +112,9 @@ def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> Refusal | N
 
     None when one was; else the reason against the first that fits.
     """
+    if "command" in kinds and (known := query_forms.answer(words, builder)) is not None:
+        builder.say(known)
+        return None
     reason: Refusal = NoWording(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
     for wording, slots in readings(words, *kinds):
         trial = builder.fork()
