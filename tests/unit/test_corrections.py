@@ -19,6 +19,8 @@ from tests.everyday import FLAT, HOME
         ("put the box on the study shelf", "right box, wrong shelf, the bookshelf", "put the box on the bookshelf"),
         ("bring me the bottle", "yeah but on the bedside table, not to me", "put the bottle on the bedside table"),
         ("wait fifty seconds", "fifteen, not fifty", "wait fifteen seconds"),
+        ("put the box on the desk", "no not on the desk on the dresser", "put the box on the dresser"),
+        ("bring me the red mug", "no not the mug the can", "bring me the can"),
         ("bring me the keys", "i did not say keys, i said glasses", "bring me the glasses"),
     ],
 )  # fmt: skip
@@ -34,6 +36,8 @@ def test_words_that_fit_no_part_are_not_put_into_the_command() -> None:
 
 def test_who_only_says_what_was_not_meant_denies() -> None:
     assert reply("i never said a word about a can", "bring me the can")[0] == "no"
+    assert reply("not the mug the can", "bring me the mug")[0] == "correction"
+    assert reply("sure did, and the apple as well", "bring me the box")[0] == "correction"
     assert reply("not the can")[0] == "correction"  # of several, another one
 
 
@@ -46,6 +50,7 @@ def test_who_only_says_what_was_not_meant_denies() -> None:
         ("it's got writing on", ["white can", "green can"], "white can"),
         ("that tall fella", ["white bottle", "green bottle"], "white bottle"),
         ("where the ball lives", ["bookshelf", "study shelf"], "bookshelf"),
+        ("neither, the white one", ["red can", "green can", "white can"], "white can"),
         ("not the green the other one", ["blue bottle", "green bottle"], "blue bottle"),
     ],
 )

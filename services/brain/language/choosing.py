@@ -100,12 +100,16 @@ def _singled_out(
         excluded = [part for part in parts if part]
         left = [o for o in options if not any(part <= set(o.split()) for part in excluded)]
         return left[0] if len(left) == 1 and excluded else None
-    marks = [
-        set(o.split()) | {mark for _, mark in (marks_of(o, known, household) if household else ())} for o in options
-    ]
+    marks = [list(marks_of(o, known, household)) if household else [] for o in options]
     names = words - PREPOSITIONS - {"where", "what", "that's", "it's", "on", "got", "has", "is"}
     sizes = {_SIZES[word] for word in names if word in _SIZES}
-    matching = [o for o, own in zip(options, marks, strict=True) if names and names - _SIZES.keys() - _PEOPLE <= own]
+    matching: list[str] = []
+    for kinds in ({"print"}, {"print", "beside", "use", "place", "contents"}):  # its own name before its neighbours'
+        own = [
+            set(o.split()) | {m for kind, m in found if kind in kinds} for o, found in zip(options, marks, strict=True)
+        ]
+        fits = [o for o, has in zip(options, own, strict=True) if names and names - _SIZES.keys() - _PEOPLE <= has]
+        matching = matching or fits
     if len(sizes) == 1 and len(matching) > 1:
         return _extreme(sizes.pop(), matching, known)
     return matching[0] if len(matching) == 1 and not sizes else None

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
-from common.language.contrasts import with_qualities
+from common.language.contrasts import contrasted, with_qualities
 from common.language.exchange import PREPOSITIONS, noun_phrases, replaced, with_thing
 from common.language.lexicon import COMMANDING, HANDLING
 from common.language.meaning import is_question
@@ -12,7 +12,7 @@ from common.language.normalise import DETERMINERS, Words, infinitive, normalise
 from common.language.politeness import without_politeness
 from common.language.quantities import NUMBERS
 from common.plan_rules import is_destination
-from services.brain.language.dialogue import REJECTED, is_reply, pieces
+from services.brain.language.dialogue import is_reply, pieces, rejected
 
 _CONTRAST = re.compile(r"^(?P<right>(?!not\b).+?),? (?:and |but )?not (?P<wrong>.+)$")
 _GRADED = re.compile(
@@ -66,8 +66,10 @@ def _meant(parts: Sequence[str]) -> tuple[list[str], str]:
     """
     found, wrong = list[str](), ""
     for part in parts:
-        if rejected := REJECTED.match(part):
-            wrong = rejected["wrong"]
+        if denied := rejected(part):
+            wrong = denied
+        elif part.startswith("not "):  # not the red one the blue one
+            found.append(contrasted(part))
         elif contrast := _CONTRAST.match(part):
             found, wrong = [*found, contrast["right"]], contrast["wrong"]
         elif not (_GRADED.match(part) or is_reply(part) or len(part) == 1):

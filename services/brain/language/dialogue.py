@@ -5,6 +5,7 @@ from typing import Literal
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
+from common.language.contrasts import contrasted
 from common.language.meaning import asks_for
 from common.language.normalise import Words, normalise
 from common.language.politeness import without_politeness
@@ -21,7 +22,9 @@ _CORRECTION = re.compile(
 
 
 _MISHEARD = re.compile(r"^no,? (?:not )?(?:the )?\w+(?: \w+)? (?=i (?:said|meant)\s)")
-REJECTED = re.compile(
+_MORE = re.compile(r"\b(?:and|as well|too|also|then)\b")
+"""Words of an answer that asks for more than was asked about."""
+_REJECTED = re.compile(
     r"^(?:not|neither|(?:i |we )?(?:did not|never) (?:say|said|mean|meant|ask for|want)(?: a word about)?) "
     r"(?P<wrong>.+)$"
 )
@@ -42,11 +45,11 @@ def reply(text: str, asked: str = "") -> tuple[Reply, str]:
     """
     kind, rest = by_wording(text)
     parts = pieces(text) if asked else []
-    if parts and all(REJECTED.match(part) or _kind(part) == "no" for part in parts):
+    if parts and all(rejected(part) or _kind(part) == "no" for part in parts):
         return "no", ""
     if kind == "correction" and "?" not in text:
         sense, p = ANSWERS.likeliest(text, asked, kind)
-        if p >= SURE.get(sense, 1.0):
+        if p >= SURE.get(sense, 1.0) and not (sense == "yes" and _MORE.search(text)):
             return sense, ""  # type: ignore[return-value]
     return kind, rest
 
@@ -71,6 +74,12 @@ def pieces(answer: str) -> list[str]:
     """The parts of an answer between its marks, which are gone."""
     parts = re.split(r"[,;.!?]+|\bbut\b", normalise(answer, ",;.!?"))
     return [bare for part in parts if (bare := _CORRECTION.sub("", part.strip()))]
+
+
+def rejected(part: str) -> str:
+    """What a part of an answer says was not meant, where it says no more than that; "" of other parts."""
+    found = _REJECTED.match(part) if contrasted(part) == part else None
+    return found["wrong"] if found else ""
 
 
 def is_reply(text: str) -> bool:
