@@ -52,6 +52,17 @@ def _tells(words: Words, following: Sequence[str]) -> bool:
     return bool(wanted) or expected(words, following)
 
 
+def _is_topic(words: Words, following: Sequence[str], builder: PlanBuilder, named_first: bool) -> bool:
+    """Does a clause only say what the `following` one is about? It is noted; `named_first`: it is a name alone."""
+    if _tells(words, following) or (named_first and "it" in following and _VERBS.isdisjoint(words)):
+        note(words, builder)  # "the red can, bin it"
+        return True
+    if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
+        builder.spot = topic[0]  # "the bookshelf. What is there?"
+        return True
+    return False
+
+
 def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
     """Everything that a text asks for, as steps.
 
@@ -68,11 +79,7 @@ def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
-        if _tells(words, following) or (number == 0 and names and "it" in following and _VERBS.isdisjoint(words)):
-            note(words, builder)  # "the red can, bin it"
-            continue
-        if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
-            builder.spot = topic[0]  # "the bookshelf. What is there?"
+        if _is_topic(words, following, builder, named_first=number == 0 and names):
             continue
         if number and words[0] == "any" and sentences[number - 1].endswith(f" {' '.join(words[1:])}"):
             continue  # "get me a can. Any can"
@@ -92,6 +99,15 @@ def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
             said = words
         else:  # a verb that nobody said is understood of what is known alone
             said = () if builder.vocabulary.new_nouns else ("bring", *words)
+    return _steps(builder)
+
+
+def _steps(builder: PlanBuilder) -> list[PlanStep]:
+    """What the clauses came to.
+
+    Raises:
+        Refusal: that is nothing, or something is left open.
+    """
     if builder.unmet:
         builder.say(builder.unmet)
     if builder.collecting:
