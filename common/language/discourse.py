@@ -83,6 +83,7 @@ _TOP_OF = re.compile(
 )
 """Where something lies, said with more words: on the bedroom floor, on the cabinet."""
 _OVER_THERE = re.compile(r"\b(?:over|right|up|down) there (?=(?:on|in|at|next to|near|beside|by|under|behind) )")
+_WISH_BEHIND = re.compile(r",(?= (?:i|we) (?:really |would |do )*(?:want|need|like|fancy) (?:some|something|an?) )")
 _KEPT = r"(?:goes?|belongs?|lives?|stays?|puts?|keep|kept|have (?:its|their) (?:place|home)|supposed to be)"
 _NOTED = re.compile(
     r"^(?:(?:please|and|so|now|no),? )*(?:(?:do )?(?:remember|note)|(?:keep|bear) in mind|just so you know|"
@@ -115,6 +116,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]
+    if verb_first(without_politeness(whole)):
+        whole = _WISH_BEHIND.sub(".", whole)
     whole = with_whereabouts(whole)
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
     return [clause for part in parts for clause in cut_clauses(settled(part, is_place))]

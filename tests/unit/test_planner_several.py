@@ -61,3 +61,15 @@ def test_what_is_to_be_remembered_is_a_rule(said: str, right: str) -> None:
 
 def test_a_rule_about_one_thing_is_asked_about() -> None:
     assert planned("my charger has its place on the desk now").asks == "my charger always belong on the desk"
+
+
+@pytest.mark.parametrize(
+    ("said", "brought"),
+    [
+        ("could you get me the blue mug? I want some coffee.", ["blue mug"]),
+        ("bring me the red can, I need something to drink", ["red can"]),
+        ("bring me the apple. I want some water too.", ["apple", "blue bottle"]),
+    ],
+)
+def test_a_wish_that_is_fulfilled_tells_why(said: str, brought: list[str]) -> None:
+    assert [step.object for step in planned(said).steps if step.action == "grasp"] == brought

@@ -1,5 +1,6 @@
 """A text read clause by clause: what is told of a thing is noted, what is asked for goes into the plan. Pure."""
 
+import re
 from collections.abc import Sequence
 
 from common.language.breaks import is_statement
@@ -16,6 +17,7 @@ from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.rules import ACTIONS
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.reference.fits import fitting
 
 MAX_CHARACTERS = 2000
 """Longest text that is read (chosen: a minute of speech has a thousand characters)."""
@@ -23,6 +25,12 @@ MAX_WORDS = 60
 """Longest clause (chosen: the readings of a pattern grow with its square)."""
 _VERBS = frozenset({"is", "are", "was", "were", "has", "have", "needs", "goes", "belongs"})
 """Words that make more than a name of a clause that begins with one."""
+
+_WISHES = re.compile(
+    r"^(?:i|we) (?:really |would |do )*(?:want|need|like|fancy) "
+    r"(?P<wanted>(?:some|something|an?) (?!.*\b(?:too|also|another|more|well)\b).+)$"
+)
+"""A wish for something of a kind, and not for one more."""
 
 
 def _sentences(command: str, builder: PlanBuilder) -> list[str]:
@@ -50,6 +58,13 @@ def _tells(words: Words, following: Sequence[str]) -> bool:
     """Is a clause only about a thing that the `following` one asks for? "I want the apple. Put it on the desk"."""
     wanted = words[0] in ("i", "we") and is_statement(" ".join(words)) and {"it", "them"} & set(following)
     return bool(wanted) or expected(words, following)
+
+
+def _explains(words: Words, builder: PlanBuilder) -> bool:
+    """Is a wish fulfilled by what was asked for just before, so that it only tells why that was?"""
+    found = _WISHES.match(" ".join(words))
+    phrase = read(tuple(found["wanted"].split()), builder.vocabulary) if found else None
+    return isinstance(phrase, Phrase) and bool(builder.last) and any(map(fitting(builder, phrase), builder.last))
 
 
 def _is_topic(words: Words, following: Sequence[str], builder: PlanBuilder, named_first: bool) -> bool:
@@ -83,6 +98,8 @@ def read_text(command: str, builder: PlanBuilder) -> list[PlanStep]:
             continue
         if number and words[0] == "any" and sentences[number - 1].endswith(f" {' '.join(words[1:])}"):
             continue  # "get me a can. Any can"
+        if number and _explains(words, builder):
+            continue
         if words[0] == "otherwise":
             if not builder.unmet:
                 break
