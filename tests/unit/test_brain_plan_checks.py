@@ -67,5 +67,7 @@ def test_an_answer_chooses_by_what_only_one_of_the_options_has() -> None:
 def test_a_name_alone_answers_what_a_suggestion_is_to_be_done_with() -> None:
     assert answered("bring me the spoon", "spatula", SCENE) == "bring me the spatula"
     assert answered("bring me the spoon", "the blue cup", SCENE) == "bring me the blue cup"
+    whole = "go to the study and bring me the spoon"
+    assert answered(whole, "the spoon", SCENE) == whole
     for sentence in ("bring me the apple", "where is the apple", "i am fine thanks a lot"):
         assert answered("bring me the spoon", sentence, SCENE) == sentence

@@ -86,3 +86,24 @@ def test_a_thing_is_put_where_it_shall_be_and_taken_from_where_it_is(said: str) 
 def test_which_thing_it_is_may_come_late(said: str, description: str) -> None:
     (found,) = [step for step in steps(said) if step[0] == "find"]
     assert found[1:] == (("duck", description) if description else ("duck with the red beak",))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "The kitchen sink is blocked. Please get me the duck from the desk.",
+        "This shelf won't hold. I'll need the duck from the desk.",
+    ],
+)
+def test_a_place_of_which_something_is_told_is_none_to_go_to(said: str) -> None:
+    assert steps(said) == [
+        ("navigate", "desk"),
+        ("find", "duck", "duck from the desk"),
+        ("grasp", "duck"),
+        ("return",),
+        ("release",),
+    ]
+
+
+def test_a_place_where_something_is_wanted_is_asked_about() -> None:
+    assert understand(Sentence("-", "I'm in the kitchen. Bring me the duck.", "fetch(duck)")).steps == []

@@ -95,6 +95,8 @@ def _exchanged(said: str, part: str, wrong: str, household: Household) -> str | 
         return " ".join((*words[: at[0]], *bare, *words[at[-1] + 1 :])) if at else None
     if not bare or (len(bare) > LONGEST_NAME and part.split()[0] not in DETERMINERS | PREPOSITIONS):
         return None
+    if f" {' '.join(bare)} " in f" {said} ":
+        return said  # "the plunger", after "go to the bathroom and bring me the plunger"
     thing = " ".join(words[slice(*spans[0])]) if (spans := noun_phrases(words)) else ""
     goes = is_place(tuple(w for w in bare if w not in PREPOSITIONS))
     if (

@@ -25,13 +25,23 @@ _TOLD_APART = re.compile(
 )
 """Behind these stand things that tell which one is meant, or is not; none of them is in the plan."""
 
+_TELLS_WHY = re.compile(
+    r"^(?:the|this|that|these|those|my|our) (?:\w+ ){1,3}?"
+    r"(?:is|are|was|were|has|have|will|does|do|needs?|looks?|keeps?)\b"
+    r"(?!.*\b(?:on|in|at|to|into|onto|from|for|where|here|there|and|it|them)\b)"
+)
+"""A clause beside others that says how something is and no more: "the kitchen sink is blocked"."""
+
 
 def unaccounted(clauses: Sequence[str], steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary) -> list[str]:
     """Colours, kinds and places of the clauses that no step has anything to do with; [] for a plan that only speaks."""
     if not any(s.action in _ACTS for s in steps):
         return []
     trace = _Trace(steps, world, vocabulary)
-    asked = [_asked(clause, trace.certain).split() for clause in clauses if not is_question(clause)]
+    told = [clause for clause in clauses if len(clauses) > 1 and _TELLS_WHY.match(clause)]
+    asked = [
+        _asked(clause, trace.certain).split() for clause in clauses if clause not in told and not is_question(clause)
+    ]
     definite = [tuple(words) for words in asked if words and words[0] not in CONDITIONS and "or" not in words]
     return [word for words in definite for word in trace.missing(words)]
 
