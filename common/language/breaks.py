@@ -97,6 +97,13 @@ _BEHIND = re.compile(
     r" (?:am|is|are|feel|feels|have|has|can not|could not|do not|does not|will|think)\b)"
 )
 """Before a reason that is said behind a request."""
+_PURPOSE = re.compile(
+    r"(?:\s*[,.;?!]+)?\s+(?:because |since |as |so (?:that )?)?(?:i|we) (?:really |just |still )*"
+    r"(?:want|need|have(?: got)?|would like|am (?:about|going)|are (?:about|going)|wish|intend|plan) to "
+    r"(?!(?:have|get|see|know|hear|be|go|put|take|bring|use|borrow)\b)(?!.*\b(?:you|robot|instead)\b)[^.;?!,]*[.!\s]*$"
+)
+"""What is wanted for something, said behind a request: no more is asked for by it."""
+_MAY_I_HAVE = re.compile(r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?(?:have|get|use|borrow)\b")
 _TELLS_WHERE = re.compile(r"^(?:it|they) (?:is|are) (?:\w+ ){0,2}?(?:in|on|at|next|near|beside|under|behind)\b")
 
 
@@ -109,6 +116,15 @@ def without_reason_behind(text: str) -> str:
         if asks and not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
             return head
     return text
+
+
+def without_purpose(text: str) -> str:
+    """`get me the hammer, i want to hang up a picture` without what it is wanted for."""
+    found = _PURPOSE.search(text)
+    head = text[: found.start()] if found else ""
+    bare = without_politeness(head)
+    asks = bare.split()[:1] and (bare.split()[0] in REQUESTS or _WISHED.match(head) or _MAY_I_HAVE.match(head))
+    return head if asks else text
 
 
 def with_breaks(text: str) -> str:

@@ -7,7 +7,7 @@ clause asks for is none of it. Pure.
 import re
 
 from common.language.apposition import put_where_labelled, with_shared_noun
-from common.language.breaks import with_breaks
+from common.language.breaks import with_breaks, without_purpose
 from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
 from common.language.contractions import expand
@@ -116,6 +116,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]
+    whole = without_purpose(whole)
     if verb_first(without_politeness(whole)):
         whole = _WISH_BEHIND.sub(".", whole)
     whole = with_whereabouts(whole)

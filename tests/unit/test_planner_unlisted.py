@@ -107,3 +107,15 @@ def test_a_place_of_which_something_is_told_is_none_to_go_to(said: str) -> None:
 
 def test_a_place_where_something_is_wanted_is_asked_about() -> None:
     assert understand(Sentence("-", "I'm in the kitchen. Bring me the duck.", "fetch(duck)")).steps == []
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "Can I have the duck? I want to show it to my sister.",
+        "get me the duck, I need to wash it",
+        "bring me the duck so that I can wash it",
+    ],
+)
+def test_what_it_is_wanted_for_asks_for_nothing_more(said: str) -> None:
+    assert steps(said) == [("find", "duck"), ("grasp", "duck"), ("return",), ("release",)]
