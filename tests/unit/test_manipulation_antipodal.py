@@ -238,6 +238,12 @@ def test_what_is_low_and_lies_across_the_way_is_also_taken_with_a_hand_that_lean
         assert g.width < 0.03 and np.ptp(between(across, g)[:, 1]) == pytest.approx(g.width, abs=0.006)
 
 
+def test_what_lies_across_is_also_taken_with_a_hand_that_leans_as_far_as_a_worktop_asks() -> None:
+    """To what lies 0.9 m up the arm comes no steeper than 60 degrees."""
+    across = target("long", (0.2, 0.04, 0.04), visible(rod(0.2, 0.02, math.pi / 2), np.random.default_rng(2)), yaw=1.57)
+    assert any(g.tilt < math.radians(60) and abs(float(g.pose.rotation[1, 1])) < 0.5 for g in grasps(across))
+
+
 def beside_a_ball(width: float) -> Array:
     """What is seen of a ball of 60 mm, and of a bar of a width [m] beside it."""
     ball = surface(replace(target("ball", (0.06, 0.06, 0.06)), position=(0.0, 0.0, 0.0)))

@@ -26,10 +26,11 @@ BEARINGS = (0, 25, -25, 50, -50, 75, -75)
 """From where [deg], off the way from the arm to the object, except straight from above."""
 ROLLS = tuple(range(-90, 90, 15))
 """How far the fingers are turned [deg] from above."""
-LEANING, LEAST_ROLL = (75, 65), 20
+LEANING, FARTHEST, LEAST_ROLL = (75, 65), 55, 20
 """Tilts [deg] with which the fingers are turned as well, by more than that, to take what is low and lies across the way
-to it: from straight above the arm does not reach what is on a counter. Chosen: one finger is then 8 mm lower than the
-other on either side of 20 mm."""
+to it: from straight above the arm does not reach what is on a counter, nor steeper than 60 what is on a worktop of 0.9
+m. What is round lies across no way: of a plate the last would take its slope. Chosen: one finger is then 8 to 11 mm
+lower than the other on either side of 20 mm."""
 LEVER = 0.08
 """Farthest [m] to the side of an object's middle, in any direction: held by its neck a bottle of 0.3 kg that lay swings
 by 35 degrees."""
@@ -133,7 +134,8 @@ def _directions(target: Target, facing: float) -> Iterator[tuple[Array, int, flo
     for roll in sorted({*ROLLS, *(round(angle, 1) for angle in own)}, key=abs):
         rotation = approach_rotation(facing, math.pi / 2, math.radians(roll))
         yield rotation, 90, 0.0, f"from above, fingers at {roll:+.0f}"
-    for tilt in LEANING if target.size[2] < LOW else ():
+    leaning = LEANING if target.family in ("round", "bowl") and not target.lies else (*LEANING, FARTHEST)
+    for tilt in leaning if target.size[2] < LOW else ():
         for roll in sorted({*ROLLS[::2], *(round(angle, 1) for angle in own)}, key=abs):
             if abs(roll) > LEAST_ROLL:
                 rotation = approach_rotation(facing, math.radians(tilt), math.radians(roll))
