@@ -92,6 +92,13 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" | {ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]",
     ),
     Wording(
+        "number",
+        f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you seen | did you see"
+        f" | do we have | have we got | there are] [there | {LYING} | left] (on | in | at) <spot>"
+        f" | {ASK} how many [of] <thing> [{BE} there | there are | do (we | i | you) (have | own) | have (we | i) got"
+        f" | do you (see | know | remember) [of] | can you see | have you seen | {BE} (left | here | around)] [left]",
+    ),
+    Wording(
         "colour",
         f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} (what | which) (colour | color) "
         f"<thing> {BE} | {ASK} what {BE} the (colour | color) of <thing>"

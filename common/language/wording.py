@@ -4,7 +4,7 @@ from typing import Literal, NamedTuple
 
 Action = Literal[
     "stop", "cancel", "continue", "yes", "no", "refuse", "greeting", "parting",
-    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "say", "wait", "count",
+    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait", "count",
     "wait_there", "come_back", "leave", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "teach_owned", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
@@ -19,7 +19,7 @@ Action = Literal[
 Kind = Literal["command", "reply", "name", "told"]
 QUESTIONS: frozenset[Action] = frozenset(
     {
-        "seen", "contents", "holding", "whereabouts", "where", "recall", "exists", "is_at", "colour",
+        "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "written", "beside", "extreme", "compare",
         "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery",
         "rules", "belongs", "usual", "last_seen", "repeat",

@@ -3,7 +3,8 @@
 import re
 
 from common.language.normalise import enumeration
-from services.planner.commands.telling import MANY, a, be, capital, place_of
+from common.language.pattern import Slots
+from services.planner.commands.telling import MANY, a, be, capital, not_after_moving, place_of
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
@@ -119,6 +120,14 @@ def counted(builder: PlanBuilder, found: re.Match[str]) -> str:
         places = _places(builder, found["what"])
         return f"I know of {len(places)} {found['what']}: {enumeration([f'the {name}' for name in places])}."
     return f"I know of {_number(builder, found['what'], _things(builder, found['what']))}."
+
+
+def number(builder: PlanBuilder, slots: Slots) -> None:
+    """How many there are; a count of all of them is the same after some have been moved."""
+    if "spot" in slots:
+        not_after_moving(builder)
+    what = " ".join((*slots["thing"], *(("on", *slots["spot"]) if "spot" in slots else ())))
+    builder.say(f"I know of {_number(builder, what, _things(builder, what))}.")
 
 
 def _number(builder: PlanBuilder, what: str, known: list[BelievedObject]) -> str:
