@@ -111,9 +111,9 @@ def without_reason_behind(text: str) -> str:
     """`get me the bottle i am so thirsty` without why; a text without such a reason as it is."""
     for found in _BEHIND.finditer(text):
         head, tail = text[: found.start()], text[found.end() :]
-        first = without_politeness(head).split()
-        asks = len(first) > 1 and (first[0] in REQUESTS or _WISHED.match(head)) and not _UNFINISHED.search(head)
-        if asks and not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
+        if not _requests(head) or len(without_politeness(head).split()) < 2 or _UNFINISHED.search(head):
+            continue
+        if not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
             return head
     return text
 
@@ -122,9 +122,12 @@ def without_purpose(text: str) -> str:
     """`get me the hammer, i want to hang up a picture` without what it is wanted for."""
     found = _PURPOSE.search(text)
     head = text[: found.start()] if found else ""
-    bare = without_politeness(head)
-    asks = bare.split()[:1] and (bare.split()[0] in REQUESTS or _WISHED.match(head) or _MAY_I_HAVE.match(head))
-    return head if asks else text
+    return head if _requests(head) or _MAY_I_HAVE.match(head) else text
+
+
+def _requests(text: str) -> bool:
+    first = without_politeness(text).split()[:1]
+    return bool(first) and (first[0] in REQUESTS or _WISHED.match(text) is not None)
 
 
 def with_breaks(text: str) -> str:

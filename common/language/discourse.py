@@ -12,7 +12,7 @@ from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
 from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
-from common.language.lexicon import A_VERB, COMMANDING, HANDLING
+from common.language.lexicon import A_VERB, A_WISH, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.place_told import with_whereabouts
@@ -83,7 +83,7 @@ _TOP_OF = re.compile(
 )
 """Where something lies, said with more words: on the bedroom floor, on the cabinet."""
 _OVER_THERE = re.compile(r"\b(?:over|right|up|down) there (?=(?:on|in|at|next to|near|beside|by|under|behind) )")
-_WISH_BEHIND = re.compile(r",(?= (?:i|we) (?:really |would |do )*(?:want|need|like|fancy) (?:some|something|an?) )")
+_WISH_BEHIND = re.compile(rf",(?= {A_WISH} (?:some|something|an?) )")
 _KEPT = r"(?:goes?|belongs?|lives?|stays?|puts?|keep|kept|have (?:its|their) (?:place|home)|supposed to be)"
 _NOTED = re.compile(
     r"^(?:(?:please|and|so|now|no),? )*(?:(?:do )?(?:remember|note)|(?:keep|bear) in mind|just so you know|"

@@ -10,7 +10,7 @@ from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
-from services.planner.reference.places import NoSuchPlace, spot
+from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent, handled_before
 from services.planner.reference.relations import between
 from services.planner.reference.resolve import referent, referents
@@ -224,13 +224,11 @@ def _surface(builder: PlanBuilder, slots: Slots) -> Receptacle:
         raise Refusal("I cannot put things on the floor")
     try:
         where = spot(builder, words)
-    except Refusal as refusal:
+    except Refusal:
         phrase = read(words, builder.vocabulary)
-        if isinstance(phrase, Phrase):
-            if phrase.sense.new:
-                raise NoSuchPlace(f"I know no {phrase.noun}") from None
+        if isinstance(phrase, Phrase) and not phrase.sense.new:
             raise Refusal(f"I cannot put things on or in the {phrase.noun}") from None
-        raise refusal from None
+        raise
     if where.room:
         return builder.in_room(where.name)
     if where.receptacle is None:

@@ -38,10 +38,9 @@ def unaccounted(clauses: Sequence[str], steps: Sequence[PlanStep], world: World,
     if not any(s.action in _ACTS for s in steps):
         return []
     trace = _Trace(steps, world, vocabulary)
-    told = [clause for clause in clauses if len(clauses) > 1 and _TELLS_WHY.match(clause)]
-    asked = [
-        _asked(clause, trace.certain).split() for clause in clauses if clause not in told and not is_question(clause)
-    ]
+    alone = len(clauses) == 1
+    meant = [clause for clause in clauses if not is_question(clause) and (alone or not _TELLS_WHY.match(clause))]
+    asked = [_asked(clause, trace.certain).split() for clause in meant]
     definite = [tuple(words) for words in asked if words and words[0] not in CONDITIONS and "or" not in words]
     return [word for words in definite for word in trace.missing(words)]
 

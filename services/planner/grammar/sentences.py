@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from common.language.breaks import is_statement
 from common.language.discourse import commands
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_WISH, COMMANDING
 from common.language.meaning import asks_for
 from common.language.normalise import Words
 from common.language.wording import COURTESIES
@@ -26,10 +26,7 @@ MAX_WORDS = 60
 _VERBS = frozenset({"is", "are", "was", "were", "has", "have", "needs", "goes", "belongs"})
 """Words that make more than a name of a clause that begins with one."""
 
-_WISHES = re.compile(
-    r"^(?:i|we) (?:really |would |do )*(?:want|need|like|fancy) "
-    r"(?P<wanted>(?:some|something|an?) (?!.*\b(?:too|also|another|more|well)\b).+)$"
-)
+_WISHES = re.compile(rf"^{A_WISH} (?P<wanted>(?:some|something|an?) (?!.*\b(?:too|also|another|more|well)\b).+)$")
 """A wish for something of a kind, and not for one more."""
 
 
