@@ -230,3 +230,21 @@ def test_an_axis_whose_upper_end_is_not_seen_keeps_its_direction() -> None:
     tracker, _ = seen([lies], [guess])
     (found,) = tracker.objects()
     assert quat_yaw(found.orientation) == pytest.approx(0.34, abs=0.05)
+
+
+@pytest.mark.parametrize(("height", "working"), [(1.2, True), (0.81, False)], ids=["high up", "as it was lifted"])
+def test_what_fell_from_the_hand_is_the_same_where_it_is_seen_again(height: float, working: bool) -> None:
+    tracker, [before] = seen([sighting(4.0, -3.0, CAN, RED)])
+    for at in (0.81, height):
+        tracker.carry((4.0, -3.0, at), True, 1.0)
+    tracker.carry((4.0, -3.0, height), False, 2.0, working=working)
+    down = View(
+        np.zeros((480, 640, 3), np.uint8), np.full((480, 640), 2.0, np.float32), (550.0, 550.0), (320.0, 240.0),
+        np.array([4.0, -3.0, 2.3]), np.diag([1.0, -1.0, -1.0]),
+    )  # fmt: skip
+    for n in range(3):
+        tracker.update(down, [], 30.0 + n)
+    assert tracker.objects() == []
+    lies = replace(sighting(4.3, -2.4, CAN, RED), position=(4.3, -2.4, 0.035), on="", tilt=math.pi / 2)
+    tracker.update(looking(0.0, 0.0), [replace(lies, position=(5.2, -2.4, 0.035)), lies], 40.0)
+    assert {o.position[0]: o.id == before.id for o in tracker.objects()} == {4.3: True, 5.2: False}

@@ -25,6 +25,8 @@ DOUBT = 0.45
 FALLEN = 0.15
 """Height [m] above where it would rest from which what leaves the hand falls. Chosen: a tall bottle that is put down
 is held 0.08 above its middle."""
+FALLS = 1.0
+"""How far [m] on the floor plan from the hand what fell from it is seen again. Chosen: from a worktop, and rolling."""
 LOW, ABOVE = 0.045, 0.005
 """Height [m] up to which a thing lies flat, and how much higher than it what lies on it is. Chosen: as `joints.LOW` has
 it; half a pencil."""
@@ -41,6 +43,7 @@ class ObjectTracker:
         self._household, self._gone_after, self._min = household, gone_after, min_confidence
         self._tracks: list[Track] = []
         self._lost: deque[Track] = deque(maxlen=LOST)
+        self._fallen: list[Track] = []
         self._count = 0
 
     def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
@@ -74,6 +77,7 @@ class ObjectTracker:
                 self._tracks.append(track)
                 seen.add(track.id)
             see(track, d, now, should_show(track, view))
+        self._fallen = [t for t in self._fallen if not self._is_found(t, seen)]
         for track in missing:
             track.misses += 1
             fresh = [t for t in self._tracks if t.began > max(track.began, now - FRESH) and t.id in seen]
@@ -81,9 +85,23 @@ class ObjectTracker:
             if heir is not None:
                 # It was seen elsewhere before it could be seen that it is gone.
                 heir.id, heir.label, heir.began, track.misses = track.id, track.label, track.began, self._gone_after
-        self._lost.extend(t for t in self._tracks if t.misses >= self._gone_after)
+                seen.add(heir.id)
+        gone = [t for t in self._tracks if t.misses >= self._gone_after]
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
+        self._lost.extend(gone)
+        kept = {t.id for t in self._tracks}
+        # No picture has shown it since it was in the hand.
+        self._fallen += [t for t in gone if t.seen_at > t.looked_at and t.id not in kept]
         return seen
+
+    def _is_found(self, fallen: Track, seen: set[str]) -> bool:
+        """What fell from the hand is seen somewhere below: that goes by its id from now on."""
+        fresh = [t for t in self._tracks if t.began > fallen.seen_at and t.id in seen]
+        heir = moved_here(fallen, fresh, FALLS)
+        if heir is not None:
+            heir.id = fallen.id
+            seen.add(fallen.id)
+        return heir is not None
 
     def _take_near(self, view: View, detections: Sequence[Detection], now: float) -> tuple[set[str], list[Detection]]:
         """Where the hand's own camera shows objects that nobody listed: ids of those; and what is left of its view."""
@@ -102,7 +120,7 @@ class ObjectTracker:
         """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was.
 
         What falls while the arm rests lies behind on the base's way, where the hand was. While the arm is `working` the
-        base stands there itself: what falls then is forgotten until it is seen again.
+        base stands there itself: what falls then is nowhere until it is seen again.
         """
         held = next((t for t in self._tracks if t.held), None)
         if holding and held is None:
@@ -121,6 +139,8 @@ class ObjectTracker:
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
         if working and hand[2] - held.position[2] > FALLEN and not (surface and surface.depth):
             self._tracks.remove(held)
+            held.held, held.seen_at = False, now
+            self._fallen.append(held)
             return True
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
