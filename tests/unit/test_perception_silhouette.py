@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import msgspec
 import numpy as np
@@ -139,8 +140,8 @@ def test_what_is_wider_than_its_dark_foot_stands_where_its_lit_part_is() -> None
     (one,) = on_surface(view, "table", plane, Cloud(known, x, y, z), nobody, blobs)
     rows, columns = np.nonzero(view.rgb[..., 0] == 220)
     lit = Segment(one.surface, rows, columns, view.points[rows, columns].astype(np.float64), False, (True, True))
-    whole = with_parts(view, one, [lit])
-    assert whole.shape is None and len(whole.dark)
+    whole = with_parts(view, replace(one, points=np.array([[*AT, FLOOR + 0.02]])), [lit])
+    assert whole.shape is None and len(whole.dark) and len(whole.points) == len(whole.rows)
     shape = measured(view, whole)
     assert (shape.x, shape.y) == pytest.approx(AT, abs=0.015) and shape.size[2] == pytest.approx(0.18, abs=0.01)
 

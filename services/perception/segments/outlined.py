@@ -131,7 +131,7 @@ def with_parts(view: View, segment: Segment, parts: list[Segment]) -> Segment:
         return replace(segment, rows=rows, columns=columns, points=points)
     # What is wider above its foot seems to stand behind it: its lit parts say where it is.
     foot = guessed(view, lit, (segment.rows, segment.columns))
-    return replace(segment, rows=lit[0], columns=lit[1], points=points, shape=None, dark=foot)
+    return replace(segment, rows=lit[0], columns=lit[1], points=points[-len(lit[0]) :], shape=None, dark=foot)
 
 
 def is_part(points: Array, shape: Measurement) -> bool:
