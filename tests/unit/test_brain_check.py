@@ -211,7 +211,7 @@ def ended(bench: Bench) -> m.MissionOutcome:
 def test_what_stands_where_it_belongs_is_delivered_and_the_look_is_evidence() -> None:
     bench = brought()
     query = bench.next_goal(QUERY, 2)
-    assert query.query == "red mug" and query.since > 0.0
+    assert (query.query, query.meant) == ("red mug", "object-1") and query.since > 0.0
     assert bench.state.state == "RELEASING" and bench.state.step == "check red mug"
     look(bench, 2)
     last = ended(bench)

@@ -62,7 +62,9 @@ def see(bench: Bench, count: int, found: bool = True) -> None:
     query = bench.next_goal(QUERY, count)
     assert query.query == "red mug"
     at = (0.7, 0.0, 0.51) if query.since else MUG_AT
-    pose = m.ObjectPose(query_id=query.id, found=found, label="red mug", position=at, seen_at=bench.now)
+    pose = m.ObjectPose(
+        query_id=query.id, found=found, label="red mug", position=at, seen_at=bench.now, id="object-1"
+    )  # fmt: skip
     bench.send(topics.OBJECT_POSE, pose)
     bench.step()
 

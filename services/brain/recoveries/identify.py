@@ -5,10 +5,9 @@ from functools import partial
 from py_trees.behaviour import Behaviour
 
 from common.naming.likeness import LEAST, LIKELY
-from common.naming.names import normalise
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
-from services.brain.steps.find import LocateObject, known_by_name
+from services.brain.steps.find import LocateObject
 from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, candidates
 from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
@@ -46,14 +45,3 @@ ask_about_the_near, near_possible = partial(ask_whether, near=True), partial(may
 ask_about_the_rest = partial(ask_whether, least=LEAST)
 """After the search: also what fits the words badly, because nothing fits them better."""
 remains_possible = partial(may_be, least=LEAST)
-
-
-def unknown_by_name(ctx: Context, task: Task, there: bool) -> bool:
-    """An object may be meant by a word that says nothing of looks, a trophy, be it yellow: to look on for it would not
-    tell which it is.
-
-    `there`: only where the person has said where it is.
-    """
-    told = not there or bool(ctx.told_points(task.item).any())
-    head = normalise(task.item).split()[-1:]
-    return told and not known_by_name(ctx, task.item, *head) and remains_possible(ctx)

@@ -1,17 +1,17 @@
 """Recovery: an object that is not in view is looked for by turning, then from other viewpoints, then reported."""
 
-from functools import partial
-
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from common.naming.likeness import LEAST, ROUGHLY
+from common.naming.names import normalise
 from services.brain.mission.context import Context
 from services.brain.mission.remarks import PERSON
 from services.brain.recoveries.clarify import ask_which, several_match
-from services.brain.recoveries.identify import ask_about_the_rest, ask_whether, may_be, unknown_by_name
+from services.brain.recoveries.identify import ask_whether, may_be
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
-from services.brain.steps.find import LocateObject, ReportNotFound
+from services.brain.steps.find import LocateObject, ReportNotFound, known_by_name
 from services.brain.steps.leaf import Settle
 from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
@@ -30,16 +30,21 @@ AFTER_A_GLANCE = (
 def search(ctx: Context, task: Task) -> Behaviour:
     """`max_retry_attempts` attempts: the first turns on the spot, the others go to where more can be seen.
 
-    What is unknown by its name is asked about before them where it was said where it is, and before the last one.
+    What may be meant is asked about before them where it was said where it is, and before the last one: at once what
+    fits ROUGHLY, and whatever it is for a word that says nothing of looks, a trophy, be it yellow: to look on for it
+    would not tell which it is.
     """
     *first, last = [_attempt(ctx, task, number) for number in range(1, ctx.config.max_retry_attempts + 1)]
     return Selector("search", _ask(ctx, task, "there"), *first, _ask(ctx, task, ""), last)
 
 
 def _ask(ctx: Context, task: Task, where: str) -> Condition:
-    unknown = partial(unknown_by_name, ctx, task, bool(where))
-    asked = ask_about_the_rest(ctx, task)
-    return Condition(f"unknown_{where or 'anywhere'}", asked, unknown, Status.FAILURE)
+    least = ROUGHLY if known_by_name(ctx, task.item, *normalise(task.item).split()[-1:]) else LEAST
+
+    def worth_it() -> bool:
+        return (not where or bool(ctx.told_points(task.item).any())) and may_be(ctx, least)
+
+    return Condition(f"unknown_{where or 'anywhere'}", ask_whether(ctx, task, least), worth_it, Status.FAILURE)
 
 
 def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:

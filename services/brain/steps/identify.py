@@ -11,7 +11,7 @@ from common import messages as m
 from common.household import Household
 from common.language.normalise import enumeration, indefinite, without_determiners
 from common.language.noun_phrase import WHICH, related
-from common.naming.likeness import LEAST, PLAIN, describes, likeness
+from common.naming.likeness import LEAST, PLAIN, ROUGHLY, describes, likeness
 from common.naming.names import ANYTHING, unnumbered
 from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply
@@ -29,8 +29,11 @@ NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
 MOST_ASKED, AT_FIRST = 4, 2
-"""Questions that a person is asked in one mission, and before everything was looked at unless the words fit an object
-HALF (chosen: more is a nuisance, and a better one may come)."""
+"""Questions that a person is asked in one mission, and before MANY looks unless the words fit an object HALF (chosen:
+more is a nuisance, and a better one may come); one is left for when everything was looked at."""
+MANY = 12
+"""Poses looked from, each view as it is reached and left [count], from which on what fits ROUGHLY is asked about, and
+not only what is LIKELY. Chosen: six views; the others of a home take minutes, a question seconds."""
 MOST_NAMED, RIVAL = 5, 0.5
 """Objects that one question names, and their likeness, of that of the likeliest, from which they are named with it.
 Chosen: more are not kept in mind; of two that are about as likely nobody wants to be asked one by one."""
@@ -116,8 +119,10 @@ def candidates(ctx: Context, least: float, near: bool = False) -> list[m.Possibl
     search = ctx.mission.search
     if search.unanswered or search.questions >= MOST_ASKED:
         return []
-    if least > LEAST and search.questions >= AT_FIRST:
-        least = max(least, HALF)
+    if least > LEAST:
+        much = len(search.visited) >= MANY
+        least = min(least, ROUGHLY) if much else least
+        least = max(least, HALF) if search.questions >= (MOST_ASKED - 1 if much else AT_FIRST) else least
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
     left = [p for p in left if not near or search.directions(p.position)]
     rivals = [p for p in left if p.likeness >= RIVAL * left[0].likeness][:MOST_NAMED]

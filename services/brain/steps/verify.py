@@ -35,6 +35,7 @@ ASIDE = 0.4
 class VerifyPlacement(SendGoal):
     """Asks perception where the object is that was put down last, in a picture taken from now on.
 
+    By its id, whatever it looks like from here, and by its label where nothing is known by that.
     Perception that cannot be asked is no failure as long as nobody has seen its process: the mission then claims no
     more than the hand felt. One that was alive and does not answer is `UNCHECKED`.
     """
@@ -54,8 +55,9 @@ class VerifyPlacement(SendGoal):
         return f"check {self.ctx.mission.delivery.put_down}"
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        ctx = self.ctx
-        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=ctx.mission.delivery.put_down, since=ctx.now)
+        ctx, label = self.ctx, self.ctx.mission.delivery.put_down
+        meant = next((one.id for one in ctx.mission.search.found.values() if one.label == label), "")
+        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=label, since=ctx.now, meant=meant)
 
     def succeed(self, result: Result) -> Status:
         ctx, pose = self.ctx, result.message
@@ -136,7 +138,7 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     mission, label, household = ctx.mission, ctx.mission.delivery.put_down, ctx.io.household
     asked = (item for item, one in mission.search.found.items() if one.label == label)
     rest = next((rest for item in asked if (rest := mission.delivery.rests.get(item))), Rest())
-    seen = ctx.known_object(label)
+    seen = next((o for o in ctx.objects if o.id == pose.id and o.id), None) or ctx.known_object(label)
     # A vessel that lay may have been stood on its mouth, and then looks like a can.
     alike = any(kind_of(k).ends_alike for k in (seen.kind, *seen.kinds[:1])) if seen else False
     shape, unlike = seen.shape if seen else "", mission.delivery.unlike == label

@@ -37,9 +37,9 @@ word. Chosen: a person is asked about both when they are seen, about the second 
 SOMEWHAT: dict[Evidence, float] = {"same": 0.5, "silent": 0.4, "other": 0.1}
 """Likeness of what looks like the taught thing, by what print says of it. Chosen: a person is asked about the first two
 when they are seen, about the last when nothing else was found."""
-RESEMBLES = 0.15
+RESEMBLES = 0.12
 """Most likeness of what has but colour and kind of the taught thing. Chosen: asked about when nothing else is found."""
-DOUBTFUL = 0.2
+DOUBTFUL = 0.14
 """Likeness of what looks like the taught thing and was read from fewer than TURNED sides. Chosen: from another its
 words are seen."""
 
