@@ -36,6 +36,8 @@ SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
 SHAPED = 0.5
 """That likeness by how unlike an object is to kinds that have a shape. Chosen: what is a mug to four tenths and more is
 asked about as a tool when all else was looked at."""
+VAGUE = 0.35
+"""Share of the likeliest kind with a shape below which an object may have any. Chosen: one of three, and the third."""
 NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
 """Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
 the shape of none. Chosen: rarely right."""
@@ -150,7 +152,7 @@ def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
     unlike = NO_KIND - (NO_KIND - ROUGHLY) * _shaped(o)
     seen = {*kinds} if shades else {k for k in kinds if k not in SHAPELESS or k in o.kinds}
     kind = max((_has_kind(k, o) if k in seen else unlike for k in kinds), default=0.0)
-    if o.kind in SHAPELESS and kinds:
+    if kinds and (o.kind in SHAPELESS or (not packed and _shaped(o) < VAGUE)):
         # A teapot with its spout ahead is no mug, jar or can.
         kind = max(kind, unlike)
     return kind if packed else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)

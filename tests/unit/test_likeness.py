@@ -5,7 +5,7 @@ import pytest
 from common.config import config_dir
 from common.household import Household, load_words, mapped
 from common.messages import WorldObject
-from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, looks_like, other_goods, partly
+from common.naming.likeness import LEAST, LIKELY, PLAIN, ROUGHLY, describes, likeness, looks_like, other_goods, partly
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
 
@@ -26,6 +26,7 @@ CAN = measured("grey can", {"can": 0.7, "jar": 0.3}, {"grey": 0.65, "white": 0.3
 DUCK = measured("yellow box", {"box": 0.8, "carton": 0.2}, {"yellow": 0.8, "orange": 0.2})
 TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
 
+SPOUT = measured("white ball", {"ball": 0.3, "tool": 0.25, "toy": 0.2, "carton": 0.15, "box": 0.1}, {"white": 1.0})
 ORANGE = measured("orange orange", {"orange": 0.6, "ball": 0.4}, {"orange": 1.0})
 BRUSH = measured("orange tool", {"tool": 0.6, "box": 0.4}, {"orange": 1.0})
 
@@ -106,6 +107,8 @@ def test_a_label_is_enough_for_what_was_put_down() -> None:
         ("red tomato", TIN, 0.0, LEAST),
         ("vitamins", TIN, 0.0, LEAST),
         ("white can", TIN, 0.0, LEAST),
+        ("teapot", SPOUT, ROUGHLY, LIKELY),
+        ("white teapot", SPOUT, ROUGHLY, LIKELY),
     ],
 )
 def test_words_that_say_nothing_of_looks_are_asked_about(

@@ -119,3 +119,8 @@ def test_grey_is_called_so_in_a_home_whose_surfaces_are_warm() -> None:
     steel = np.broadcast_to(np.array([94, 100, 106], np.uint8), (300, 3))
     assert {"grey", "white"} & set(main_words(shares(steel, warm)))
     assert "blue" in main_words(shares(np.broadcast_to(np.array([90, 110, 150], np.uint8), (300, 3)), np.ones(3)))
+
+
+def test_slate_is_grey_to_some_and_a_blue_sky_to_nobody() -> None:
+    assert shares(pixels((0.42, 0.44, 0.53), 400), np.ones(3)).get("grey", 0.0) > 0.08
+    assert "grey" not in shares(pixels((0.5, 0.75, 0.95), 400), np.ones(3))

@@ -23,12 +23,14 @@ COLOURED, HUE_PARTS, BRIGHT = 0.3, 12, 85
 """Saturation from which a pixel has a hue, the parts of the circle of hues that are told apart, and the percentile of
 brightness of what is lit. Chosen: as wide as a colour's word."""
 _SHADES = (
-    (0.2, 0.0, 1.0, 0.7), (0.16, 0.0, 1.0, 0.4), (0.16, 0.0, 1.0, 1.0),
-    (0.12, -0.012, 1.0, 0.7), (0.12, 0.012, 1.0, 0.7), (0.12, 0.0, 0.88, 0.7), (0.12, 0.0, 1.14, 0.7),
+    (0.1, 0.0, 1.0, 0.7, 1.0), (0.16, 0.0, 1.0, 0.4, 1.0), (0.16, 0.0, 1.0, 1.0, 1.0), (0.1, 0.0, 1.0, 0.7, 0.65),
+    (0.12, -0.012, 1.0, 0.7, 1.0), (0.12, 0.012, 1.0, 0.7, 1.0), (0.12, 0.0, 0.88, 0.7, 1.0),
+    (0.12, 0.0, 1.14, 0.7, 1.0),
 )  # fmt: skip
-"""Weight, turn of the hue [turns], gain of the brightness and share of the light's cast with which a colour is named:
-at the limit it has two words. Chosen: what light and camera leave uncertain; a home's neutral surfaces are warm
-themselves, so that grey seems blue where all of that is taken for the light's."""
+"""Weight, turn of the hue [turns], gain of the brightness, share of the light's cast and of the saturation with which a
+colour is named: at the limit it has two words. Chosen: what light and camera leave uncertain; a home's neutral surfaces
+are warm themselves, so that grey seems blue where all of that is taken for the light's; and what people call grey is
+bluish by a quarter."""
 MOST_PIXELS = 600
 """Pixels of an object whose colours are named."""
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
@@ -123,8 +125,10 @@ def shares(rgb: NDArray[np.uint8], gains: Array) -> dict[str, float]:
     values = rgb.astype(np.float64) / 255 * gains
     values = _evenly_lit(values[~_shaded(values)][:: max(1, len(values) // MOST_PIXELS)])
     counts = np.zeros(len(WORDS))
-    for weight, turn, gain, cast in _SHADES:
-        words = pixel_words(values * gain * (gains / gains.mean()) ** (cast - 1.0), turn)
+    for weight, turn, gain, cast, full in _SHADES:
+        lit = values * gain * (gains / gains.mean()) ** (cast - 1.0)
+        high = lit.max(axis=1, keepdims=True)
+        words = pixel_words(high - full * (high - lit), turn)
         counts += weight * np.bincount(words, minlength=len(WORDS)) / max(1, len(values))
     return {WORDS[n]: float(counts[n]) for n in np.argsort(-counts, kind="stable") if counts[n] > 0.02}
 
