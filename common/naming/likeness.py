@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from common.household import Household
-from common.kinds import KINDS, kind_of
+from common.kinds import KINDS
 from common.messages import WorldObject
 from common.naming.looks import OTHER
-from common.naming.names import ALIKE, ANYTHING, listed, normalise, own_words
+from common.naming.names import ALIKE, ANYTHING, is_ball, listed, normalise, own_words
 from common.naming.small_print import telling
 
 PLAIN = 0.55
@@ -36,8 +36,6 @@ SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
 SHAPED = 0.5
 """That likeness by how unlike an object is to kinds that have a shape. Chosen: what is a mug to four tenths and more is
 asked about as a tool when all else was looked at."""
-VAGUE = 0.35
-"""Share of the likeliest kind with a shape below which an object may have any. Chosen: one of three, and the third."""
 NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
 """Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
 the shape of none. Chosen: rarely right."""
@@ -46,8 +44,9 @@ BLANK, BLANK_SPREAD = 0.06, 0.03
 who means a can says so. Chosen: asked about after all else."""
 FLAVOURS = frozenset({"apple", "orange", "lemon", "banana"})
 """Kinds that say what is in a pack when they stand before another word, and that go by no other word than their own."""
-MOSTLY = 0.5
-"""Share of the fruits among what an object may be from which it goes by no other word. Chosen: as likely as not."""
+MOSTLY, VAGUE = 0.5, 0.35
+"""Share of the fruits among what an object may be from which it goes by no other word, and of the likeliest kind with a
+shape below which it may have any. Chosen: as likely as not; as three that are about as likely have."""
 HIDDEN = 0.5
 """Likeness of a ball that looks more like what stands on a foot, or the other way, by that of what it looks like."""
 TAKEN_FOR = (
@@ -136,7 +135,7 @@ def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool =
     """
     known, told = _known(normalise(phrase), o, household), _told_looks(normalise(phrase), household)
     # "The blue duck" is not yellow.
-    return min(_fit(known, o), _looks(told, o, packed or bool(known.shades)) if told else 1.0)
+    return min(_fit(known, o), _looks(told, o, packed or bool(known.shades), not packed) if told else 1.0)
 
 
 def _told_looks(wanted: str, household: Household) -> tuple[str, ...]:
@@ -145,17 +144,18 @@ def _told_looks(wanted: str, household: Household) -> tuple[str, ...]:
     return told.get(head) or told.get(f"{head}s") or told.get(head.removesuffix("s")) or ()
 
 
-def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
-    """How well an object fits one of the kinds among the words, in one of the colours among them unless `packed`."""
+def _looks(words: Sequence[str], o: WorldObject, any_colour: bool, vague: bool) -> float:
+    """How well an object fits one of the kinds among words, and of their colours unless in `any_colour`; if `vague`,
+    what may have any shape may be of them."""
     kinds, shades = [w for w in words if w in KINDS], [w for w in words if w in ALIKE and w not in KINDS]
     # What has any shape is told by its colour; without one, all but what may be of that kind is asked about at last.
     unlike = NO_KIND - (NO_KIND - ROUGHLY) * _shaped(o)
     seen = {*kinds} if shades else {k for k in kinds if k not in SHAPELESS or k in o.kinds}
     kind = max((_has_kind(k, o) if k in seen else unlike for k in kinds), default=0.0)
-    if kinds and (o.kind in SHAPELESS or (not packed and _shaped(o) < VAGUE)):
+    if kinds and (o.kind in SHAPELESS or (vague and _shaped(o) < VAGUE)):
         # A teapot with its spout ahead is no mug, jar or can.
         kind = max(kind, unlike)
-    return kind if packed else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
+    return kind if any_colour else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
 
 
 class _Words(NamedTuple):
@@ -222,7 +222,7 @@ def describes(phrase: str, household: Household) -> bool:
 def _has_kind(kind: str, o: WorldObject) -> float:
     shares = o.kind_shares or ({o.kind: 1.0} | dict.fromkeys(o.kinds, 1.0))
     best = max(shares.values())
-    if _is_ball(kind) != _is_ball(max(shares, key=lambda k: shares[k])):
+    if is_ball(kind) != is_ball(max(shares, key=lambda k: shares[k])):
         # Balls and what stands on a foot are taken for each other only where most is hidden.
         return HIDDEN * shares.get(kind, 0.0) / best if o.kind_shares else 0.0
     near = NEAR_KIND * any(kind in group and o.kind in group for group in TAKEN_FOR)
@@ -246,7 +246,3 @@ def _has_colour(shade: str, o: WorldObject) -> float:
         if shade != max(shares, key=lambda c: shares[c]):
             own = min(own, SECOND)
     return max(own, NEAR_COLOUR * (o.colour in ALIKE[shade]))
-
-
-def _is_ball(kind: str) -> bool:
-    return kind_of(kind).shape == "sphere"

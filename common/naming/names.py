@@ -84,13 +84,13 @@ def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
     if len(kinds) > 1:
         kinds -= set(ALIKE)
     shades, likely = words - kinds, o.kinds or [o.kind]
-    if not kinds <= {*likely, o.kind} or any(_is_ball(kind) != _is_ball(likely[0]) for kind in kinds):
+    if not kinds <= {*likely, o.kind} or any(is_ball(kind) != is_ball(likely[0]) for kind in kinds):
         return UNFIT
     place = min((n for n, kind in enumerate(likely) if kind in kinds), default=0)
     return (1, place) if shades <= {*o.colours, *label} else UNFIT
 
 
-def _is_ball(kind: str) -> bool:
+def is_ball(kind: str) -> bool:
     """Balls and fruit are mistaken for each other, and for nothing that stands on a foot."""
     return kind_of(kind).shape == "sphere"
 
