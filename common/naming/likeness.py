@@ -83,9 +83,10 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     # The last word says what it is, those before it which one: a tape measure is no tape.
     before = named if _told_looks(wanted, household) else set()
     untold = known.rest - {*told.qualities, *told.looks, *told.shades}
-    # And an untold one may make another thing of it: a magnifying glass is no glass.
-    another = bool(untold and before) and fit < ROUGHLY and _shaped(o) < MOSTLY
-    if not known.any and (another or (known.rest - set(told.qualities) and not before)):
+    # And an untold one may make another thing of it: a magnifying glass is no glass, nor a watering can a can.
+    coloured = _fit(known._replace(kinds=set()), o) >= ROUGHLY
+    another = bool(untold and (before or known.kinds)) and fit < ROUGHLY and coloured
+    if another or (not known.any and known.rest - set(told.qualities) and not before):
         return 0.0 if printed else _unnamed(o)
     headed = _known(wanted.split()[-1], o, household).any
     if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and printed and not named):

@@ -108,6 +108,9 @@ def test_a_label_is_enough_for_what_was_put_down() -> None:
         ("vitamins", TIN, 0.0, LEAST),
         ("white can", TIN, 0.0, LEAST),
         ("teapot", SPOUT, ROUGHLY, LIKELY),
+        ("magnifying glass", DUCK, LEAST, 0.1),
+        ("orange watering can", BRUSH, LEAST, 0.1),
+        ("green watering can", BRUSH, 0.0, 0.0),
         ("white teapot", SPOUT, ROUGHLY, LIKELY),
     ],
 )

@@ -3,7 +3,7 @@
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from common.naming.likeness import LEAST, ROUGHLY
+from common.naming.likeness import ROUGHLY
 from common.naming.names import normalise
 from services.brain.mission.context import Context
 from services.brain.mission.remarks import PERSON
@@ -20,6 +20,9 @@ from services.brain.world.placement import may_lie_flat
 VIEWPOINTS, FROM_NEAR = (2, 5, 9), 9
 """Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first), and how many more
 the last has where something may lie flat."""
+UNFAMILIAR = 0.065
+"""Likeness to a name that says nothing of looks from which a thing is asked about before the last attempt. Chosen: what
+is no plain mug or can, whose own word would have been said."""
 AFTER_A_GLANCE = (
     Recovery("several_match", several_match, ask_which),
     Recovery("look_closer", unsure, look_closer),
@@ -31,15 +34,16 @@ def search(ctx: Context, task: Task) -> Behaviour:
     """`max_retry_attempts` attempts: the first turns on the spot, the others go to where more can be seen.
 
     What may be meant is asked about before them where it was said where it is, and before the last one: at once what
-    fits ROUGHLY, and whatever it is for a word that says nothing of looks, a trophy, be it yellow: to look on for it
-    would not tell which it is.
+    fits ROUGHLY, and whatever is UNFAMILIAR for words of which one says nothing of looks, a yellow trophy, a magnifying
+    glass: to look on for it would not tell which it is.
     """
     *first, last = [_attempt(ctx, task, number) for number in range(1, ctx.config.max_retry_attempts + 1)]
     return Selector("search", _ask(ctx, task, "there"), *first, _ask(ctx, task, ""), last)
 
 
 def _ask(ctx: Context, task: Task, where: str) -> Condition:
-    least = ROUGHLY if known_by_name(ctx, task.item, *normalise(task.item).split()[-1:]) else LEAST
+    words = normalise(task.item).split()
+    least = ROUGHLY if all(known_by_name(ctx, task.item, word) for word in words) else UNFAMILIAR
 
     def worth_it() -> bool:
         return (not where or bool(ctx.told_points(task.item).any())) and may_be(ctx, least)

@@ -95,8 +95,9 @@ class ObjectTracker:
         return seen
 
     def _is_found(self, fallen: Track, seen: set[str]) -> bool:
-        """What fell from the hand is seen somewhere below: that goes by its id from now on."""
-        fresh = [t for t in self._tracks if t.began > fallen.seen_at and t.id in seen]
+        """What fell from the hand is seen below it or on the floor: that goes by its id from now on."""
+        below = ("", fallen.on)
+        fresh = [t for t in self._tracks if t.began > fallen.seen_at and t.id in seen and t.on in below]
         heir = moved_here(fallen, fresh, FALLS)
         if heir is not None:
             heir.id = fallen.id
