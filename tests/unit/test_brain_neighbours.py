@@ -49,6 +49,16 @@ def test_only_what_stands_near_and_was_seen_lately_counts() -> None:
         assert not standing([other], BASE, 12.0)
 
 
+@pytest.mark.parametrize(("name", "clean"), [("object-1", True), ("object-2", False)])
+def test_what_was_handled_under_another_label_is_no_neighbour(name: str, clean: bool) -> None:
+    bench = brought()
+    bench.brain.context.mission.delivery.around = standing([can(id=name)], BASE, 10.0)
+    fell = can(id=name, label="yellow jar", position=(1.2, 0.2, 0.03), on="", seen_at=bench.now)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[fell]))
+    look(bench, 2)
+    assert ended(bench).outcome == ("delivered" if clean else "failed")
+
+
 @pytest.mark.parametrize("fell", [False, True])
 def test_a_mission_that_knocked_something_over_is_not_called_done(fell: bool) -> None:
     bench = brought()

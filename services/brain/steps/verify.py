@@ -166,7 +166,9 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
 def with_care(ctx: Context) -> bool:
     """True unless something fell near the arm at work, or was taken for what was asked for: the failure is recorded."""
     mission = ctx.mission
-    handled = {found.label for found in mission.search.found.values()} | {mission.delivery.put_down, mission.task.label}
+    found = mission.search.found.values()
+    handled = {one.label for one in found} | {one.id for one in found if one.id}
+    handled |= {mission.delivery.put_down, mission.task.label}
     if fallen := knocked_over(mission.delivery.around, ctx.objects, handled):
         return _careless(ctx, "KNOCKED_OVER", " and ".join(fallen))
     if taken := _mistaken(ctx):

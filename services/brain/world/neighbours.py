@@ -46,12 +46,12 @@ def standing(objects: Iterable[WorldObject], base: Pose2, now: float) -> dict[st
 def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], handled: Iterable[str]) -> list[str]:
     """What fell over or off its surface, in clauses for people: things that stood and were seen to lie since.
 
-    `handled`: labels of the things that the robot was to move, which are judged elsewhere.
+    `handled`: ids and labels of the things that the robot was to move, which are judged elsewhere.
     """
     ours, found = set(handled), []
     for o in objects:
         was = stood.get(o.id or o.label)
-        if was is None or o.held or o.seen_at <= was.seen_at or {o.label, was.label} & ours:
+        if was is None or o.held or o.seen_at <= was.seen_at or {o.id or o.label, o.label, was.label} & ours:
             continue
         if was.position[2] - o.position[2] > LOWER and o.on != was.on:
             found.append(f"the {o.label} fell off the {was.on}" if was.on else f"the {o.label} fell down")
