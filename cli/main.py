@@ -22,7 +22,6 @@ COMMANDS = {
     "home.teach": ("teach", "forget"),
     "home.places": ("places", "rules"),
     "topic": ("topic",),
-    "tree": ("tree",),
     "watch": ("watch",),
     "fleet.command": ("fleet",),
     "recordings.record": ("record",),

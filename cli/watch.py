@@ -106,8 +106,8 @@ def mission(picture: Picture) -> Group:
     return Group(*rows)
 
 
-def tree(snapshot: m.TreeSnapshot | None) -> Tree | Text:
-    """The behaviour tree; what neither runs nor failed is folded below the first levels."""
+def tree(snapshot: m.TreeSnapshot | None, whole: bool = False) -> Tree | Text:
+    """The behaviour tree; what neither runs nor failed is folded below the first levels, unless `whole`."""
     if snapshot is None:
         return Text("no tree yet", style=FAINT)
 
@@ -121,7 +121,7 @@ def tree(snapshot: m.TreeSnapshot | None) -> Tree | Text:
     def grow(node: m.TreeNode, onto: Tree, depth: int) -> None:
         for child in node.children:
             branch = onto.add(label(child))
-            if status(child) in ("RUNNING", "FAILURE") or depth < 1:
+            if whole or status(child) in ("RUNNING", "FAILURE") or depth < 1:
                 grow(child, branch, depth + 1)
 
     root = Tree(label(snapshot.root), guide_style=FAINT)
@@ -147,8 +147,10 @@ def services(picture: Picture) -> Table:
     return table
 
 
-def drawn(picture: Picture) -> Layout:
-    """The whole screen: mission, tree, speech, services."""
+def drawn(picture: Picture, tree_alone: bool = False) -> Layout | Tree | Text:
+    """The whole screen: mission, tree, speech, services; or every node of the tree."""
+    if tree_alone:
+        return tree(picture.get(topics.BRAIN_TREE), whole=True)
     talk = Text()
     for line in list(picture.said.lines)[-LINES:]:
         people = line.who in PEOPLE
@@ -199,18 +201,20 @@ def watch(args: argparse.Namespace) -> int:
         picture = Picture(link)
         picture.update()
         if args.once:
-            console.print(drawn(picture), height=args.height)
+            console.print(drawn(picture, args.tree), height=None if args.tree else args.height)
             return 0
-        with keyboard() as typing, Live(drawn(picture), console=console, screen=True, auto_refresh=False) as live:
+        shown = drawn(picture, args.tree)
+        with keyboard() as typing, Live(shown, console=console, screen=True, auto_refresh=False) as live:
             while True:
                 waiting = select.select([sys.stdin] if typing else [], [], [], 0.2)[0]
                 if waiting and not press(link, sys.stdin.read(1)):
                     return 0
                 picture.update()
-                live.update(drawn(picture), refresh=True)
+                live.update(drawn(picture, args.tree), refresh=True)
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = robot_command(commands, watch, "state, tree, plan, speech and services in the terminal; space stops")
     parser.add_argument("--once", action="store_true", help="print one picture and leave")
+    parser.add_argument("--tree", action="store_true", help="only the behaviour tree, with every node of it")
     parser.add_argument("--height", type=int, default=40, help="lines of that picture (default %(default)s)")

@@ -133,7 +133,7 @@ def test_a_detached_run_is_commanded_by_the_other_commands(run: Run) -> None:
     state = json.loads(run.command("status", "--json").stdout)
     assert state["state"] == "IDLE" and state["mission"] is None and state["last"] is None
     assert run.command("topic", "echo", "base/odom", "-n", "1").stdout.startswith("base/odom  {")
-    assert run.command("tree").stdout.count("\n") > 3
+    assert run.command("watch", "--once", "--tree").stdout.count("\n") > 3
     assert "stopped" in run.command("stop").stdout
     assert "running" in run.command("resume").stdout
     again = run.detached()

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from cli import topic, tree
+from cli import topic
 from cli.errors import CliError
 from cli.payload import line
 from cli.zenoh_decoder import decode, decode_text
@@ -109,10 +109,3 @@ def test_rates() -> None:
     stamps = [(0.01 * i, 100) for i in range(101)]
     assert "100.0 Hz" in topic.rate_line("a", stamps) and "10.0 kB/s" in topic.rate_line("a", stamps)
     assert topic.rate_line("a", [(1.0, 5)]) == "a  1 message"
-
-
-def test_the_tree_is_drawn_with_the_running_path() -> None:
-    leaf = m.TreeNode(name="drive", type="Drive", status="RUNNING", detail="2 m to go")
-    root = m.TreeNode(name="mission", type="Sequence", status="RUNNING", children=[leaf])
-    drawn = tree.drawn(m.TreeSnapshot(t=3.0, root=root)).splitlines()
-    assert drawn[1:] == ["* mission [Sequence]", "  * drive [Drive]  2 m to go"]

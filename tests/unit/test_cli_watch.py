@@ -27,10 +27,10 @@ def picture(monkeypatch: pytest.MonkeyPatch) -> watch.Picture:
     return watch.Picture(Silent())  # type: ignore[arg-type]
 
 
-def text(picture: watch.Picture, width: int = 100) -> str:
+def text(picture: watch.Picture, width: int = 100, tree_alone: bool = False) -> str:
     console = Console(width=width, record=True, file=None, force_terminal=False)
     with console.capture() as taken:
-        console.print(watch.drawn(picture), height=44)
+        console.print(watch.drawn(picture, tree_alone), height=None if tree_alone else 44)
     return taken.get()
 
 
@@ -83,6 +83,9 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
     ):  # fmt: skip
         assert words in shown, words
     assert "folded" not in shown
+    assert [line.strip("│├└─ ") for line in text(picture, tree_alone=True).splitlines()] == [
+        "root", "wait", "inner", "folded", "do", "drive", "leaf  2 m left",
+    ]  # fmt: skip
     assert shown.count("heard: bring me the mug") == 1
 
 
