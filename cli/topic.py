@@ -135,12 +135,12 @@ def pub(args: argparse.Namespace) -> int:
             if number:
                 sleep(1 / args.rate)
             link.send(topic, message)
-        _note(link, topic)
+        _note(link)
     print(f"{key}  {line(key, codec.encode(topic, message))}")
     return 0
 
 
-def _note(link: Link, topic: Topic[Any]) -> None:
+def _note(link: Link) -> None:
     """Let the message leave before the session closes: the answer comes back after it has gone out."""
     delivery.fetch(link.session, topics.HEALTH.key, timeout=1.0)
 

@@ -75,10 +75,7 @@ def delivers_at_home(floor_plan: FloorPlan) -> bool:
     receptacle, home = floor_plan.receptacle(floor_plan.delivery), floor_plan.home
     if receptacle is None:
         return True
-    outline = receptacle.outline
-    u, v = outline.to_local(home.x, home.y)
-    half, across = outline.length / 2, outline.width / 2
-    x, y = outline.to_map(min(max(u, -half), half), min(max(v, -across), across))
+    x, y = receptacle.outline.nearest(home.x, home.y)
     bearing = math.atan2(y - home.y, x - home.x) - home.theta
     return math.dist((x, y), (home.x, home.y)) <= HANDED and abs(math.remainder(bearing, 2 * math.pi)) <= BEFORE
 

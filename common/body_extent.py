@@ -1,4 +1,4 @@
-"""The extent of compiled bodies: corners of a mesh, bounds of a geom, and how low what collides reaches."""
+"""Compiled bodies: corners and triangles of a mesh, bounds of a geom, and how low what collides reaches."""
 
 import math
 from typing import Any
@@ -15,6 +15,12 @@ def corners(model: Any, mesh: int) -> Any:
     """Corners (n, 3) [m] of a compiled mesh, in its own frame."""
     begin = int(model.mesh_vertadr[mesh])
     return model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])]
+
+
+def triangles(model: Any, mesh: int) -> Any:
+    """Triangles (k, 3) of a compiled mesh, by their corners' numbers."""
+    begin = int(model.mesh_faceadr[mesh])
+    return model.mesh_face[begin : begin + int(model.mesh_facenum[mesh])]
 
 
 def bounds(model: Any, geom: int, turn: Array, place: Array) -> tuple[Array, Array]:

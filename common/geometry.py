@@ -105,6 +105,12 @@ class Rectangle(NamedTuple):
         u, v = self.to_local(x, y)
         return math.hypot(max(abs(u) - self.length / 2, 0.0), max(abs(v) - self.width / 2, 0.0))
 
+    def nearest(self, x: float, y: float) -> tuple[float, float]:
+        """The point of the rectangle that is nearest to a point."""
+        u, v = self.to_local(x, y)
+        half, across = self.length / 2, self.width / 2
+        return self.to_map(min(max(u, -half), half), min(max(v, -across), across))
+
     def meets(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """True when the straight line from one point to the other touches the rectangle; slab method."""
         a, b = self.to_local(*start), self.to_local(*end)

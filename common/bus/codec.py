@@ -12,7 +12,6 @@ M = TypeVar("M", bound=m.Message)
 JSON, MSGPACK = "application/json", "application/msgpack"
 MAX_TEXT_BYTES = 65536
 """Longest goal as bare text [bytes]; chosen: no sentence is as long."""
-_OPENERS = b'{["'
 _SPACE = b" \t\r\n"
 
 _json_encode = msgspec.json.Encoder().encode

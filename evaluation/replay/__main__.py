@@ -7,17 +7,19 @@ import argparse
 import os
 import sys
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 from cli.errors import CliError
 from cli.output import ProgressLine
-from common import config, topics
+from common import config
 from common.household import load_household
-from common.recording import Recording, RecordingError
+from common.mission_log.recorded import decoded
+from common.recording import Recording, RecordingError, Row
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
 from evaluation.registry import service_class
-from evaluation.replay.comparison import TOLERANCE, Timed, Verdict, compare, decoded
+from evaluation.replay.comparison import TOLERANCE, Timed, Verdict, compare
 from evaluation.replay.player import Player
 
 SLACK = 0.2
@@ -67,22 +69,22 @@ def _seed(run: dict[str, str], default: int) -> int:
 
 def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], slack: float) -> list[Verdict]:
     """One verdict for every topic that the service writes."""
-    recorded: dict[str, list[Timed]] = {}
-    for row in player.recording.rows:
-        topic = topics.BY_KEY.get(row.key)
-        message = None if row.junk or topic is None else decoded(row.key, row.payload)
-        if message is not None and player.covers(row):
-            recorded.setdefault(row.key, []).append((row.t, message))
-    replayed: dict[str, list[Timed]] = {}
-    for t, key, payload in outputs:
-        message = decoded(key, payload)
-        if message is not None:
-            replayed.setdefault(key, []).append((t, message))
+    recorded = _by_key(row for row in player.recording.rows if player.covers(row))
+    replayed = _by_key(Row(key, payload, t, wall=0.0) for t, key, payload in outputs)
     found = []
     for topic in player.kind.WRITES:
         old, new = recorded.get(topic.key, []), replayed.get(topic.key, [])
         if old or new:
             found.append(compare(topic, old, new, slack))
+    return found
+
+
+def _by_key(rows: Iterable[Row]) -> dict[str, list[Timed]]:
+    """The messages of each key with their times, without what is none."""
+    found: dict[str, list[Timed]] = {}
+    for row in rows:
+        if (message := decoded(row)) is not None:
+            found.setdefault(row.key, []).append((row.t, message))
     return found
 
 

@@ -8,8 +8,6 @@ from typing import Any
 import msgspec
 
 from common import messages as m
-from common import topics
-from common.bus import codec
 from common.topic import Topic
 
 EPOCHS = {"epoch", "world"}  # random for every start of a process
@@ -94,16 +92,6 @@ def differs(old: Any, new: Any, slack: float, name: str = "", tolerance: float =
     else:
         same = old == new
     return "" if same else f"{name} {_short(old)} -> {_short(new)}"
-
-
-def decoded(key: str, payload: bytes) -> m.Message | None:
-    """The message of a recorded payload, None when it is none."""
-    topic = topics.BY_KEY[key]
-    try:
-        message: m.Message = codec.decode(topic, payload)
-    except codec.DecodeError:
-        return None
-    return message
 
 
 def _number(value: Any) -> bool:

@@ -91,7 +91,7 @@ class DashboardService:
             self.scene.move(now, self._t)
         if now - self._slow_at >= (SLOW if watched else 1.0):
             self._slow_at = now
-            self._refresh(now)
+            self._refresh()
         if watched:
             self._cameras.look(now, self.scene.base)
             if now - self._plot_at >= PLOT:
@@ -155,7 +155,7 @@ class DashboardService:
         self.web.answer(asked, timeline.page(record) if record is not None else "")
 
     # --- to the visitors
-    def _refresh(self, now: float) -> None:
+    def _refresh(self) -> None:
         io, panels = self._io, self.panels
         state, plan = io.latest(topics.BRAIN_STATE), io.latest(topics.ACTION_PLAN)
         steps = plan.steps if plan is not None and state is not None and state.pipeline == "vla" else []

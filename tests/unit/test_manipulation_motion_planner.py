@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from common.approach import EDGE_DISTANCE
-from services.manipulation.arm.arm_model import Obstacle, Pose
+from common.geometry import Array
+from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import whole
 from services.manipulation.grasps.grasp import approach_rotation
@@ -17,6 +18,12 @@ from services.manipulation.planning.motion_planner import NEAR, LastAnswers, Pla
 from services.manipulation.planning.plan_place import DEEPEST, plan_place
 from services.sim.model import own
 from tests.unit.test_manipulation_stances import PLANNER
+
+
+def touching(arm: ArmModel, q: Array) -> list[tuple[str, str]]:
+    """Names of the geoms that touch each other."""
+    arm.collides(q)
+    return [(arm.model.geom(int(a)).name, arm.model.geom(int(b)).name) for a, b in arm._pairs()]
 
 
 def test_where_the_arm_is_stretched_it_leaves_the_way_it_came() -> None:
@@ -48,7 +55,7 @@ def test_in_free_motion_the_arm_keeps_away_from_the_mast_and_not_from_where_it_h
     arm.set_obstacles((), 0.0)
     stretching = (arm.home + np.array([0, 0, 0, bend, 0, 0, 0]) for bend in np.arange(0.0, 3.0, 0.01))
     free = [q for q, _ in pairwise(takewhile(lambda q: not arm.collides(q), stretching))][-1]
-    pairs = {name for pair in arm.contact_names(free + np.array([0, 0, 0, 0.02, 0, 0, 0])) for name in pair}
+    pairs = {name for pair in touching(arm, free + np.array([0, 0, 0, 0.02, 0, 0, 0])) for name in pair}
     assert pairs & {"mast", "mast_arm", "head"}, pairs
     arm.set_obstacles((), 0.02)
     assert arm.collides(free)
@@ -74,7 +81,7 @@ def test_beside_something_near_the_arm_still_keeps_away_from_its_own_base() -> N
         if not _collides(planner, found := Obstacle((x + 0.05 + off, y, z), (0.1, 0.1, 0.1)))
     )
     planner.surround([box], arm.home)
-    assert any("box_0" not in pair for pair in arm.contact_names(bent))
+    assert any("box_0" not in pair for pair in touching(arm, bent))
 
 
 def _collides(planner: Planner, box: Obstacle) -> bool:
@@ -159,7 +166,7 @@ def test_the_hand_keeps_away_from_its_own_shoulder_and_upper_arm() -> None:
     arm.set_obstacles((), 0.0)
     folding = [arm.home + np.array([0, 0, 0, 0, 0, bend, 0]) for bend in np.arange(0.0, -1.2, -0.005)]
     free = list(takewhile(lambda q: not arm.collides(q), folding))
-    pairs = arm.contact_names(folding[len(free)])
+    pairs = touching(arm, folding[len(free)])
     assert {name for pair in pairs for name in pair} & {"shoulder_link", "shoulder", "half_arm_1_link", "upper_arm"}
     arm.set_obstacles((), 0.015)
     folded = next(q for q in free if arm.collides(q))

@@ -47,7 +47,7 @@ def inside(scene: Household, rectangle: tuple[float, float, float, float, float]
 
 def occupied(scene: Household) -> set[tuple[int, int]]:
     """Cells of the flat that its static map counts as occupied."""
-    grid = costmap(scene).static
+    grid = costmap(scene).static_distance <= 0
     cells = zip(*(axis.tolist() for axis in np.nonzero(grid)), strict=True)
     return {c for c in cells if 0 <= centre(*c)[0] <= scene.high[0] and 0 <= centre(*c)[1] <= scene.high[1]}
 
@@ -56,10 +56,10 @@ def occupied(scene: Household) -> set[tuple[int, int]]:
 def test_the_map_is_larger_than_the_flat_and_what_is_outside_is_occupied() -> None:
     made = costmap()
     assert made.shape == (13, 21) and made.origin == (ORIGIN, ORIGIN) and made.resolution == CELL
-    assert made.static.dtype == bool
+    assert (made.static_distance <= 0).dtype == bool
     for cell in itertools.product(range(13), range(21)):
         x, y = centre(*cell)
-        assert made.static[cell] == (not (0 <= x <= 2 and 0 <= y <= 1)), (x, y)
+        assert (made.static_distance <= 0)[cell] == (not (0 <= x <= 2 and 0 <= y <= 1)), (x, y)
         assert made.point(*cell) == pytest.approx((x, y))
     shifted = Costmap(Household(name="x", low=(1, -2), high=(2, 1), home=Place(name="home", x=1, y=0)), 0.25, 1.0)
     assert shifted.shape == (15, 7) and shifted.origin == pytest.approx((0.7, -2.3))
@@ -105,7 +105,7 @@ def test_a_bin_counts_with_its_rim() -> None:
 def test_the_distance_is_exact_and_not_counted_in_cells() -> None:
     box = Box(name="b", center=(1.13, 0.52, 0.2), size=(0.31, 0.17, 0.4), yaw=0.4)
     made = costmap(flat(furniture=(box,)))
-    for x, y in (centre(*c) for c in zip(*np.nonzero(~made.static), strict=True)):
+    for x, y in (centre(*c) for c in zip(*np.nonzero(~(made.static_distance <= 0)), strict=True)):
         to_the_edge = min(x, 2 - x, y, 1 - y)
         assert made.clearance(x, y) == pytest.approx(min(to_the_edge, box.outline.distance(x, y)))
     assert made.clearance(-0.2, -0.2) == 0.0

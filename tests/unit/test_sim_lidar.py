@@ -73,7 +73,7 @@ def test_a_map_knows_that_glass_is_there_and_that_no_ray_ends_at_it() -> None:
     plan = told(glazed())
     field, costmap = DistanceField(plan, 0.2), Costmap(plan, 0.05, 30.0)
     assert field.nearest(np.array([[0.0, -0.7]]))[0] > 0.3
-    assert costmap.static[costmap.cell(0.0, -0.7)]
+    assert (costmap.static_distance <= 0)[costmap.cell(0.0, -0.7)]
 
 
 def test_a_ray_held_up_by_the_robot_itself_marks_and_clears_nothing() -> None:

@@ -79,10 +79,7 @@ def _before(name: str, home: Household, base: Pose2) -> Meant:
 
 def _aside(outline: Rectangle, base: Pose2) -> float | None:
     """How far [m] a surface is from what one means by "this", None when it is not before the robot."""
-    x, y = outline.to_local(base[0], base[1])
-    half_x, half_y = outline.length / 2, outline.width / 2
-    nearest = outline.to_map(min(max(x, -half_x), half_x), min(max(y, -half_y), half_y))
-    ahead, left = to_frame(base, (float(nearest[0]), float(nearest[1])))
+    ahead, left = to_frame(base, outline.nearest(base[0], base[1]))
     distance, angle = math.hypot(ahead, left), abs(math.atan2(left, ahead))
     return distance + PER_RADIAN * angle if distance < BEFORE and angle < WIDE else None
 

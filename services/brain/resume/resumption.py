@@ -115,7 +115,7 @@ class Resumption:
         except PathNotFound as missing:
             self._end(Failure("RESTART", "CANNOT_RESUME", str(missing)))
             return
-        ctx.note("resumed", _account(decision, seen, ctx.gripper), "saw")
+        ctx.note("resumed", _account(decision, seen), "saw")
         ctx.io.log.info("resumed", mission=ctx.mission.id, path=" > ".join(str(p) for p in decision.path),
                         change=decision.change)  # fmt: skip
         ctx.save()
@@ -137,7 +137,7 @@ class Resumption:
         ctx.end_mission("cancelled" if failure.code == "CANCELLED" else "failed", reason)
 
 
-def _account(decision: Decision, seen: Observation, hand: GripperState) -> str:
+def _account(decision: Decision, seen: Observation) -> str:
     """What was seen, in words for the timeline."""
     fingers = {True: "the fingers hold something", False: "the fingers are empty", None: "the fingers say nothing"}
     where = "" if seen.base is None else f", base at ({seen.base[0]:.2f}, {seen.base[1]:.2f})"

@@ -154,6 +154,8 @@ def _geom(model: Any, g: int, colours: Array) -> Mesh:
     import mujoco
     import trimesh
 
+    from common.body_extent import corners, triangles
+
     kinds, size = mujoco.mjtGeom, model.geom_size[g]
     kind = kinds(int(model.geom_type[g]))
     if kind == kinds.mjGEOM_BOX:
@@ -172,9 +174,7 @@ def _geom(model: Any, g: int, colours: Array) -> Mesh:
         shape.apply_translation([0, 0, -0.005])
     elif kind == kinds.mjGEOM_MESH:
         m = int(model.geom_dataid[g])
-        a, n = int(model.mesh_vertadr[m]), int(model.mesh_vertnum[m])
-        b, k = int(model.mesh_faceadr[m]), int(model.mesh_facenum[m])
-        shape = trimesh.Trimesh(model.mesh_vert[a : a + n], model.mesh_face[b : b + k], process=False)
+        shape = trimesh.Trimesh(corners(model, m), triangles(model, m), process=False)
     else:
         shape = trimesh.Trimesh()
     vertices = np.asarray(shape.vertices, dtype=np.float64)

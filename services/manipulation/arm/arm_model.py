@@ -239,12 +239,6 @@ class ArmModel:
         touched = {int(g) for pair in self._pairs() for g in pair}
         return {o.label for o, geom in zip(self._around, self._boxes, strict=False) if geom in touched}
 
-    def contact_names(self, q: Array) -> list[tuple[str, str]]:
-        """Which geoms touch, for messages and tests."""
-        self.collides(q)
-        geom = self.model.geom
-        return [(geom(int(a)).name, geom(int(b)).name) for a, b in self._pairs()]
-
     def nearest_turn(self, q: Array, near: Array) -> Array:
         """The same configuration with every unlimited joint at the turn closest to `near`."""
         turns = np.round((near - q) / (2 * math.pi))

@@ -77,4 +77,4 @@ class Recovery:
         if path is not None:
             config = self._config
             follower = PathFollower(path, (*path[-1], pose[2]), config.lookahead, config.corridor)
-            self.under_way = PassingPlace(follower, person, self._map, config.footprint_radius, config.corridor, now)
+            self.under_way = PassingPlace(follower, person, self._map, config.footprint_radius, now)

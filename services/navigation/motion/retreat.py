@@ -48,12 +48,9 @@ class Retreat:
 class PassingPlace:
     """A place off the way of a person who stood at `person` when the robot set out on `follower`'s path there."""
 
-    def __init__(
-        self, follower: PathFollower, person: Point, costmap: Costmap, radius: float, corridor: float, now: float
-    ) -> None:
+    def __init__(self, follower: PathFollower, person: Point, costmap: Costmap, radius: float, now: float) -> None:
         self._follower, self._person, self._map = follower, person, costmap
-        self._radius, self._corridor = radius, corridor
-        self._until = now + GOING
+        self._radius, self._until = radius, now + GOING
         self._there = False
 
     def over(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> bool:

@@ -48,7 +48,6 @@ class Costmap(Cells):
     # --- the static map
     def _fix(self, distance: Array) -> None:
         self.static_distance = distance
-        self.static: Mask = distance <= 0
         self.obstacles.explain(distance <= _EXPLAINED)
 
     def replace(self, grid: m.MapGrid) -> None:

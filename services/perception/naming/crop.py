@@ -53,8 +53,8 @@ class Crop:
         return self.lens.focal[0] / self.distance if self.lens is not None else 0.0
 
 
-def crop_of(view: View, o: WorldObject, robot: Mask | None = None) -> Crop | None:
-    """The object in the view; None when too little of it is to be seen. `robot` marks the robot's own pixels."""
+def crop_of(view: View, o: WorldObject) -> Crop | None:
+    """The object in the view; None when too little of it is to be seen."""
     turn, middle = quat_matrix(o.orientation), np.array(o.position)
     half = np.array(o.size) / 2
     if not (half > 0).all():
@@ -72,8 +72,6 @@ def crop_of(view: View, o: WorldObject, robot: Mask | None = None) -> Crop | Non
     window = slice(top, bottom), slice(left, right)
     local = (view.points[window].astype(np.float64) - middle) @ turn
     mask = (np.abs(local) <= half + MARGIN).all(axis=-1) & (view.depth[window] > 0) & (local[..., 2] > FOOT - half[2])
-    if robot is not None:
-        mask &= ~robot[window]
     if np.count_nonzero(mask) < MIN_PIXELS:
         return None
     axis = 0 if o.tilt > 0.6 else 2

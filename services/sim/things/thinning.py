@@ -6,6 +6,7 @@ import fast_simplification
 import numpy as np
 from numpy.typing import NDArray
 
+from common import body_extent
 from common.geometry import Array
 from services.sim.things.mesh import Mesh
 
@@ -26,9 +27,7 @@ CARE = 3
 
 def corners(model: Any, number: int) -> tuple[Array, NDArray[np.int64]]:
     """Corners (n, 3) [m] and triangles (k, 3) of a compiled mesh."""
-    at, count = int(model.mesh_vertadr[number]), int(model.mesh_vertnum[number])
-    begin, faces = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
-    return np.array(model.mesh_vert[at : at + count], np.float64), np.array(model.mesh_face[begin : begin + faces])
+    return np.array(body_extent.corners(model, number), np.float64), np.array(body_extent.triangles(model, number))
 
 
 def simplified(model: Any, number: int, share: float) -> Mesh:
