@@ -245,7 +245,7 @@ def test_what_fell_from_the_hand_is_the_same_where_it_is_seen_again(height: floa
     for n in range(3):
         tracker.update(down, [], 30.0 + n)
     assert tracker.objects() == []
-    lies = replace(sighting(4.3, -2.4, CAN, RED), position=(4.3, -2.4, 0.035), on="", tilt=math.pi / 2)
+    lies = replace(sighting(4.3, -2.4, CAN, RED), position=(4.3, -2.4, 0.035), on="", size=(0.1, 0.09, 0.09))
     others = [replace(lies, position=(5.2, -2.4, 0.035)), replace(lies, position=(4.2, -2.8, 0.5), on="tray")]
     tracker.update(looking(0.0, 0.0), [*others, lies], 40.0)
     assert {o.position[0]: o.id == before.id for o in tracker.objects()} == {4.3: True, 4.2: False, 5.2: False}

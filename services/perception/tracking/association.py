@@ -65,14 +65,18 @@ def overlap(a: Track, b: Track) -> bool:
     return distance < OVERLAP * (a.half_width + b.half_width) and abs(a.position[2] - b.position[2]) < 0.8 * high
 
 
-def moved_here(d: Detection | Track, others: Sequence[Track], reach: float = PUSHED) -> Track | None:
+def moved_here(
+    d: Detection | Track, others: Sequence[Track], reach: float = PUSHED, turned: float = 0.0
+) -> Track | None:
     """The nearest of the objects that look the same, and are as large: of those that are not where they were, for what
-    is new; of those that are new, for what is not where it was. None farther than `reach` [m] is.
+    is new; of those that are new, for what is not where it was. None farther than `reach` [m] is, and none whose
+    extents differ by more than SAME_SIZE or that share which another side of it may be off, `turned`.
     """
     near = []
     for t in others:
         distance = math.hypot(d.position[0] - t.position[0], d.position[1] - t.position[1])
-        as_large = all(abs(a - b) < SAME_SIZE for a, b in zip(sorted(d.size), sorted(t.size), strict=True))
+        pairs = zip(sorted(d.size), sorted(t.size), strict=True)
+        as_large = all(abs(a - b) < max(SAME_SIZE, turned * max(a, b)) for a, b in pairs)
         if distance < reach and as_large and (_alike(d, t) if isinstance(d, Detection) else _one_look(d, t)):
             near.append((distance, t.id, t))
     return min(near)[2] if near else None

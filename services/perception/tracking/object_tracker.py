@@ -25,8 +25,9 @@ DOUBT = 0.45
 FALLEN = 0.15
 """Height [m] above where it would rest from which what leaves the hand falls. Chosen: a tall bottle that is put down
 is held 0.08 above its middle."""
-FALLS = 1.0
-"""How far [m] on the floor plan from the hand what fell from it is seen again. Chosen: from a worktop, and rolling."""
+FALLS, TURNED = 1.0, 0.35
+"""How far [m] on the floor plan from the hand what fell from it is seen again, and by which share its extents may
+differ then. Chosen: from a worktop, and rolling; a toy plane on its back is wider by that, its wings hide nothing."""
 LOW, ABOVE = 0.045, 0.005
 """Height [m] up to which a thing lies flat, and how much higher than it what lies on it is. Chosen: as `joints.LOW` has
 it; half a pencil."""
@@ -98,7 +99,7 @@ class ObjectTracker:
         """What fell from the hand is seen below it or on the floor: that goes by its id from now on."""
         below = ("", fallen.on)
         fresh = [t for t in self._tracks if t.began > fallen.seen_at and t.id in seen and t.on in below]
-        heir = moved_here(fallen, fresh, FALLS)
+        heir = moved_here(fallen, fresh, FALLS, TURNED)
         if heir is not None:
             heir.id = fallen.id
             seen.add(fallen.id)
