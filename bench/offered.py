@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 from bench import log_linear
 from common.language.log_linear import LogLinear
+from evaluation.everyday.flat import FLAT, HOME
+from evaluation.everyday.sentences import all_lists
 from services.brain.language import choosing, offered
-from tests.everyday import FLAT, HOME, all_lists
 
 
 class Answer(NamedTuple):

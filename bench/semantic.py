@@ -19,24 +19,14 @@ from pathlib import Path
 from bench import log_linear
 from bench.labelled import Labelled
 from common.plan_rules import known_world
+from evaluation.everyday.flat import CONFIG, HOME, NOW, PLAINLY
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import Sentence, all_lists
+from evaluation.everyday.understanding import Understood, after, at_rest, planned, understand
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic import ranker
 from services.planner.semantic.forms import FORMS, NONE, OTHER, Candidate, Deed, candidates, tokens
 from services.planner.world import believed
-from tests.everyday import (
-    CONFIG,
-    HOME,
-    NOW,
-    PLAINLY,
-    Sentence,
-    Understood,
-    after,
-    all_lists,
-    at_rest,
-    planned,
-    understand,
-    verdict,
-)
 
 _DEEDS: dict[str, set[Deed]] = {
     "fetch": {"bring"}, "put": {"put"}, "tidy": {"put"}, "rule": {"put"}, "take": {"take"}, "drop": {"put", "fingers"},

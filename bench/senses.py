@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 from bench import log_linear
 from common.language.log_linear import LogLinear
+from evaluation.everyday.sentences import all_lists
 from services.brain.language import senses
 from services.brain.language.dialogue import SURE as SURE_OF_ANSWERS
 from services.brain.language.dialogue import by_wording as answer
 from services.brain.language.interjection import by_wording as interjection
 from services.brain.language.senses import ANSWERS, AT_WORK, Senses
-from tests.everyday import all_lists
 
 _AT_WORK = {"answer": "aside", "refuse": "aside", "none": "idle", "return": "replace", "pause": "stop"}
 """The sense of an act of the notation at work, where it is none itself."""

@@ -31,6 +31,9 @@ from common.language.normalise import normalise
 from common.messages import ActionPlan, PlanStep
 from common.plan_rules import known_world
 from common.sound import RATE, Samples, read_wav
+from evaluation.everyday.flat import CONFIG, FLAT, HOME, NOW
+from evaluation.everyday.sentences import lists
+from evaluation.everyday.understanding import planned
 from evaluation.person.voice import utter
 from evaluation.report.statistics import wilson
 from services.brain.config import BrainConfig
@@ -42,7 +45,6 @@ from services.speech.recognise.free_text import as_heard
 from services.speech.recognise.recogniser import Recognition
 from services.speech.recognise.wake_text import without_wake
 from services.speech.transcribe import Reader
-from tests.everyday import CONFIG, FLAT, HOME, NOW, lists, planned
 
 Outcome = Literal["same", "asked", "asked wrongly", "not understood", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = ("same", "asked", "asked wrongly", "not understood", "wrong")

@@ -3,11 +3,13 @@
 import pytest
 
 from common.messages import PlanStep, RejectedPlan
+from common.plan_rules import known_world
+from evaluation.everyday.flat import CONFIG, FLAT, HOME
+from evaluation.everyday.understanding import planned
 from services.planner.grammar import grammar
 from services.planner.grammar.accounting import as_command, unaccounted
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import World, believed
-from tests.everyday import CONFIG, FLAT, HOME, known_world, planned
 
 WORLD: World = believed(HOME, known_world(HOME, [o.label for o in FLAT], ""), FLAT)
 BRING = [

@@ -3,7 +3,7 @@
 import pytest
 
 from common.language.addressee import addressee
-from tests.everyday import planned
+from evaluation.everyday.understanding import planned
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 import pytest
 
+from evaluation.everyday.understanding import planned
 from services.planner.grammar.asides import without_asides
-from tests.everyday import planned
 
 IDLE = frozenset({"they are empties", "ta", "yes you", "not that one", "if you can", "only now", "no rush"})
 

@@ -3,10 +3,10 @@
 import pytest
 
 from common.household import load_household
+from evaluation.everyday.flat import FLAT, HOME
 from services.brain.language.choosing import chosen
 from services.brain.language.corrections import answered, corrected
 from services.brain.language.dialogue import reply
-from tests.everyday import FLAT, HOME
 
 SCENE = load_household("apartment")
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from evaluation.everyday.flat import FLAT, HOME
 from services.brain.language.choosing import chosen
 from services.brain.language.corrections import corrected
 from services.brain.language.dialogue import by_wording, reply
-from tests.everyday import FLAT, HOME
 
 
 @pytest.mark.parametrize(

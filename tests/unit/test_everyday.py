@@ -8,13 +8,16 @@ from common.language.discourse import commands
 from common.language.exchange import replaced
 from common.language.meaning import is_question
 from common.language.quantities import duration
+from evaluation.everyday.flat import CONFIG, HOME
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import Sentence, lists
+from evaluation.everyday.understanding import planned, understand
 from services.brain.language.interjection import interjection
 from services.planner.grammar.spelling import corrected, distance, renamed
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.forms import tokens
 from services.planner.semantic.parse import parse
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, Sentence, lists, planned, understand, verdict
 
 
 class Least(NamedTuple):

@@ -4,11 +4,12 @@ import pytest
 
 from common.language.mood import forbids, is_told
 from common.language.verb_classes import classes
+from evaluation.everyday.flat import CONFIG, HOME
+from evaluation.everyday.understanding import planned
 from services.planner.grammar.chunks import Chunk, chunks
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.parse import parse
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, planned
 
 VOCABULARY = Vocabulary(World(HOME), CONFIG)
 

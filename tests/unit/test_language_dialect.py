@@ -3,8 +3,10 @@
 import pytest
 
 from common.language.contractions import expand
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import understand
 from services.planner.grammar.asides import with_tales_apart
-from tests.everyday import Sentence, understand, verdict
 
 
 @pytest.mark.parametrize(

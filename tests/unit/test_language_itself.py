@@ -5,9 +5,11 @@ import pytest
 from common.language.itself import about_itself
 from common.language.wording import Action
 from common.messages import BatteryState
+from evaluation.everyday.flat import CONFIG, HOME
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import planned, understand
 from services.planner.grammar import grammar
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, Sentence, planned, understand
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,9 @@
 
 import pytest
 
+from evaluation.everyday.flat import FLAT, HOME
 from services.brain.language.choosing import chosen
 from services.brain.language.offered import likeliest
-from tests.everyday import FLAT, HOME
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.everyday import planned
+from evaluation.everyday.understanding import planned
 
 
 @pytest.mark.parametrize(

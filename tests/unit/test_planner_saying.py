@@ -2,7 +2,9 @@
 
 import pytest
 
-from tests.everyday import Sentence, understand, verdict
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import understand
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,9 @@ import pytest
 
 from common.language.indirect import indirect
 from common.messages import History, MissionOutcome
+from evaluation.everyday.flat import FLAT
+from evaluation.everyday.understanding import planned
 from services.planner.commands.going import utterance
-from tests.everyday import FLAT, planned
 
 
 def said(command: str, history: History | None = None) -> str:

@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.everyday import Sentence, understand
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import understand
 
 
 def steps(said: str) -> list[tuple[str, ...]]:

@@ -5,6 +5,9 @@ from importlib.resources import files
 import pytest
 
 from bench.semantic import examples
+from evaluation.everyday.flat import CONFIG, HOME
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import planned, understand
 from services.planner.grammar.chunks import Chunk
 from services.planner.grammar.guess import Guess, contradicted
 from services.planner.grammar.vocabulary import Vocabulary
@@ -12,7 +15,6 @@ from services.planner.semantic.forms import NONE, OTHER, candidates, tokens
 from services.planner.semantic.parse import LONGEST, parse
 from services.planner.semantic.ranker import WEIGHTS, rank
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, Sentence, planned, understand
 
 VOCABULARY = Vocabulary(World(HOME), CONFIG)
 MUG, DESK, SHELF = Chunk("thing", "the mug", 1, 3), Chunk("spot", "the desk", 4, 6), Chunk("spot", "the shelf", 7, 9)

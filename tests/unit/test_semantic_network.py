@@ -9,12 +9,12 @@ import pytest
 from common.inference import session
 from common.language import transformer as module
 from common.language.transformer import PARTS, SIZE, Adapter, tokenizer, transformer
+from evaluation.everyday.flat import CONFIG, HOME
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.forms import candidates, tokens
 from services.planner.semantic.network import LONGEST, Network, read, slots
 from services.planner.semantic.ranker import WEIGHTS, named
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME
 
 VOCABULARY = Vocabulary(World(HOME), CONFIG)
 

@@ -2,10 +2,12 @@
 
 import pytest
 
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import lists
+from evaluation.everyday.understanding import understand
 from services.brain.language.dialogue import reply
 from services.brain.language.interjection import interjection
 from services.brain.language.senses import AT_WORK
-from tests.everyday import lists, understand, verdict
 
 
 @pytest.mark.parametrize(

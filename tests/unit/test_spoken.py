@@ -5,9 +5,9 @@ import pytest
 from common.household import load_household
 from common.language.discourse import commands
 from common.language.spoken import turns, understood
+from evaluation.everyday.understanding import planned
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import known_names
-from tests.everyday import planned
 
 NAMES = known_names(SpeechConfig(objects=("mug",)), load_household("apartment"), ("vitamin box",))
 

@@ -1,214 +1,19 @@
-"""What the robot makes of everyday sentences, and whether that is right by the notation of tests/data/sentences.tsv."""
+"""Whether what the robot makes of a sentence is right, by the notation of tests/data/sentences.tsv."""
 
 import re
 from itertools import chain, permutations, product
-from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal
 
-import msgspec
-
-from common import config
-from common.household import load_household
 from common.language.contractions import expand
 from common.language.normalise import normalise
-from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
-from common.plan_rules import known_world, objection
-from services.brain.language.choosing import chosen
-from services.brain.language.corrections import corrected
-from services.brain.language.dialogue import reply
-from services.brain.language.interjection import interjection
-from services.planner.config import PlannerConfig
-from services.planner.grammar import grammar
-from services.planner.world import believed
+from common.messages import History, PlanStep
+from evaluation.everyday.flat import FLAT, HOME
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import BEFORE, Understood, after, planned
 
 Verdict = Literal["right", "asked rightly", "asked back", "not understood", "wrong"]
-DATA = Path(__file__).parent / "data" / "sentences.tsv"
-LEARNING = DATA.with_name("learning.tsv")
-CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
-PLAINLY = msgspec.structs.replace(CONFIG, guess=False)
-"""Settings of a planner that does not guess, so that no guess is learnt from."""
-HOME = load_household("apartment")
-NOW = 500.0
-MUG, CAN, BLOCK, BOTTLE, BOX = (
-    (0.08, 0.08, 0.095), (0.066, 0.066, 0.115), (0.05, 0.05, 0.05), (0.064, 0.064, 0.21), (0.06, 0.08, 0.13),
-)  # fmt: skip
-BALL, APPLE, BOWL = (0.066, 0.066, 0.066), (0.072, 0.072, 0.072), (0.14, 0.14, 0.06)
 
 
-def _object(
-    label: str, on: str, x: float, y: float, z: float, size: tuple[float, float, float], names: str = "", text: str = ""
-) -> WorldObject:
-    colour, kind = ("red", "apple") if label == "apple" else label.split()
-    return WorldObject(
-        label=label, kind=kind, colour=colour, position=(x, y, z + size[2] / 2), size=size, on=on,
-        seen_at=NOW - 60.0, names=[names] if names else [], text=text, colours=[colour],
-    )  # fmt: skip
-
-
-FLAT = [
-    _object("red mug", "living table", -1.9, -2.2, 0.5, MUG),
-    _object("green can", "living table", -1.6, -2.3, 0.5, CAN),
-    _object("white box", "living table", -1.1, -2.3, 0.5, BOX), _object("blue mug", "counter", 3.8, -3.1, 0.76, MUG),
-    _object("red can", "counter", 4.2, -3.1, 0.76, CAN), _object("yellow bowl", "counter", 4.7, -3.1, 0.76, BOWL),
-    _object("blue bottle", "counter", 5.1, -3.1, 0.76, BOTTLE),
-    _object("apple", "kitchen table", 5.0, -0.7, 0.72, APPLE),
-    _object("yellow block", "kitchen table", 5.4, -0.7, 0.72, BLOCK),
-    _object("white mug", "desk", -2.6, 2.7, 0.72, MUG),
-    _object("orange box", "desk", -2.6, 3.2, 0.72, BOX, names="vitamin box"),
-    _object("red ball", "bookshelf", 1.2, 1.74, 0.7, BALL),
-    _object("blue block", "bookshelf", 1.7, 1.74, 0.7, (0.04, 0.04, 0.04)),
-    _object("green bottle", "bedside table", 4.7, 4.18, 0.55, BOTTLE),
-    _object("white can", "dresser", 6.7, 1.5, 0.74, CAN, text="TOMATO SOUP"),
-    _object("white bottle", "dresser", 6.7, 2.0, 0.74, (0.07, 0.07, 0.26)),
-]  # fmt: skip
-"""The flat that the head of sentences.tsv describes."""
-
-
-class Sentence(NamedTuple):
-    context: str
-    said: str
-    right: str
-
-
-def lists(path: Path = DATA) -> dict[str, list[Sentence]]:
-    """The rows of tests/data/sentences.tsv, or of another such file, by the number of their list."""
-    found: dict[str, list[Sentence]] = {}
-    for line in path.read_text(encoding="utf-8").splitlines():
-        if line and not line.startswith("#"):
-            number, *row = line.split("\t")
-            found.setdefault(number, []).append(Sentence(*row))
-    return found
-
-
-def all_lists() -> dict[str, list[Sentence]]:
-    """The lists that are tested, and those that are only learnt from."""
-    return {**lists(), **lists(LEARNING)}
-
-
-class Understood(NamedTuple):
-    """What the robot makes of a sentence. `kind`: "queue", "replace" or another word that stands before it, "" none.
-
-    `looks` are steps that only go and look before the plan proper; `reason` says why there is no plan.
-    """
-
-    kind: str
-    looks: list[PlanStep]
-    steps: list[PlanStep]
-    reason: str = ""
-    asks: str = ""
-
-
-def understand(sentence: Sentence) -> Understood:
-    """What the brain and the planner make of a sentence in its context."""
-    tag, _, about = sentence.context.partition(":")
-    match tag:
-        case "heard":
-            kind, rest = reply(sentence.said, about)
-            if kind == "correction":
-                return planned(corrected(about, rest, HOME), FLAT, "", History())
-            return Understood(kind, [], [])
-        case "which":
-            options = about.split("|")
-            kind = reply(sentence.said)[0]
-            label = None if kind == "cancel" else chosen(sentence.said, options, FLAT, HOME)
-            if label is None and kind in ("no", "cancel"):
-                return Understood(kind, [], [])
-            return Understood(f"pick {label}", [], []) if label else Understood("", [], [], "no choice")
-        case "busy":
-            said = interjection(sentence.said, about)
-            if said.kind == "aside":
-                return planned(said.text, FLAT, "", History(doing=about, step=f"find {about}"))
-            if said.kind in _BEFORE:
-                return planned(said.text, FLAT, "", after(_BEFORE[said.kind], about)[2])._replace(kind=said.kind)
-            return Understood(said.kind, [], [])
-    return planned(sentence.said, *after(tag, about))
-
-
-_BEFORE: dict[str, str] = {"queue": "last", "replace": "instead"}
-"""Context in which something is planned that was said for later, or instead of what was under way."""
-
-
-def at_rest(sentence: Sentence) -> Sentence:
-    """What was said to a robot at work as the planner gets it, with the readings that are for then; others as it is."""
-    tag, _, about = sentence.context.partition(":")
-    said = interjection(sentence.said, about) if tag == "busy" else None
-    if said is None or said.kind not in _BEFORE:
-        return sentence
-    readings = [r.strip().removeprefix(f"{said.kind}: ") for r in sentence.right.split("||") if said.kind in r]
-    return Sentence(f"{_BEFORE[said.kind]}:{about}", said.text, "||".join(readings)) if readings else sentence
-
-
-def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
-    """Flat, what is in the hand, and history of a context."""
-    flat = list(FLAT)
-    if tag == "held":
-        history = History(taken_from={about: next((o.on for o in FLAT if o.label == about), "")})
-        return [o for o in flat if o.label != about], about, history
-    if tag == "instead":  # what was under way is the last command by then
-        return flat, "", History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
-    if tag not in ("last", "failed"):
-        return flat, "", History(said="x")
-    done = planned(about, FLAT, "", History(), PLAINLY)
-    label = next((s.object for s in (*done.looks, *done.steps) if s.object), "")
-    origin = next((o.on for o in FLAT if o.label == label), "")  # "" of what nobody has listed, and of a rule's things
-    if not origin and tag == "last":
-        return (
-            flat,
-            "",
-            History(
-                last=MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5),
-                said=" ".join(s.text for s in done.steps),
-            ),
-        )
-    target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
-    if tag == "failed":
-        spoken = f"I could not find the {label}."
-        last = MissionOutcome(id="m", command=about, outcome="failed", reason=spoken, spoken=spoken, t=NOW - 5)
-        return flat, "", History(last=last, objects=[label] if label else [])
-    last = MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5)
-    actions = [s.action for s in done.steps]
-    if "grasp" not in actions:  # it stands where it was
-        return flat, "", History(last=last, objects=[label])
-    if actions[-1] == "grasp":
-        return (
-            [o for o in flat if o.label != label],
-            label,
-            History(last=last, objects=[label], taken_from={label: origin}),
-        )
-    receptacle = HOME.receptacle(target)
-    assert receptacle is not None
-    x, y, z = receptacle.center
-    moved = [
-        o if o.label != label else WorldObject(label=o.label, kind=o.kind, colour=o.colour, position=(x, y, z + 0.05),
-                                               size=o.size, on=receptacle.name, seen_at=NOW - 5)
-        for o in flat
-    ]  # fmt: skip
-    return moved, "", History(last=last, objects=[label], taken_from={label: origin})
-
-
-def planned(
-    command: str,
-    objects: list[WorldObject] | None = None,
-    held: str = "",
-    history: History | None = None,
-    settings: PlannerConfig = CONFIG,
-) -> Understood:
-    """The planner's last word, after it has looked where it wanted to."""
-    objects = FLAT if objects is None else objects
-    told = known_world(HOME, [o.label for o in objects], held)
-    world = believed(HOME, told, objects, (0.0, 0.0, 0.0), NOW, history)
-    looked: list[PlanStep] = []
-    for _ in range(5):
-        plan: ActionPlan = grammar.plan(command, world, settings, (), looked)
-        wrong = objection(plan.steps, told, HOME)
-        assert not plan.steps or wrong is None, f"{command!r}: the brain objects: {wrong}"
-        if not plan.again:
-            break
-        looked += plan.steps
-    return Understood("", looked, plan.steps, plan.detail, plan.suggestion)
-
-
-# --- right or wrong
 def verdict(sentence: Sentence, found: Understood) -> Verdict:
     """Whether what was understood is one of the readings that are right."""
     if any(_fits(reading.strip(), sentence, found) for reading in sentence.right.split("||")):
@@ -236,7 +41,7 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
 def _after_a_yes(sentence: Sentence, found: Understood) -> bool:
     """Does what was asked about come to the right plan?"""
     tag, _, about = sentence.context.partition(":")
-    meant = planned(found.asks, *after(_BEFORE.get(found.kind, tag), about))
+    meant = planned(found.asks, *after(BEFORE.get(found.kind, tag), about))
     return verdict(sentence, meant._replace(kind=found.kind)) == "right"
 
 
