@@ -14,7 +14,7 @@ from common import topics
 from common.bus import codec
 from common.bus.delivery import Publisher
 from common.bus.session import open_session
-from tests.support import Site, site
+from evaluation.site import Site, site
 
 ROUNDS = 1000
 """Round trips of a measurement, of which the first tenth is left out."""

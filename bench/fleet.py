@@ -34,7 +34,7 @@ from common.bus.session import open_session
 from common.security.access import FLEET_READS
 from common.time.clock import unix_time
 from common.time.lockstep import DT
-from tests.support import Site, eventually, site
+from evaluation.site import Site, eventually, site
 
 PROBE = topics.POSE
 """The topic by which arrivals are counted: a stream of some size that several read."""

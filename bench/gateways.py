@@ -14,10 +14,10 @@ from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 
+from bench.peers.foxglove import FoxgloveClient
+from bench.peers.ros import ros_peer
 from cli.processes.ports import free_port
-from tests.foxglove_client import FoxgloveClient
-from tests.ros_peer import ros_peer
-from tests.support import Site, eventually, site
+from evaluation.site import Site, eventually, site
 
 SENSORS = {
     "joint_states": "sensor_msgs/msg/JointState",

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from xdist.scheduler import LoadFileScheduling
 
-from tests.support import Site, site
+from evaluation.site import Site, site
 
 IN_PROCESS = ("unit", "in_process")
 """Directories of the tests that start no processes."""

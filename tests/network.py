@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import ROOT, end
+from evaluation.site import end
+from tests.support import ROOT
 
 _NUMBERS = itertools.count(os.getpid() % 200)
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from bench.fuzz.storm import TRUSTED, Storm
 from cli.processes.services import SERVICES
 from common import messages as m
+from evaluation.site import site
 from evaluation.stack import service_class
-from tests.support import site
 
 
 def table(storm: Storm, health: dict[str, m.Health]) -> Iterable[str]:

@@ -12,8 +12,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.topic import Topic
+from evaluation.site import Site, eventually
 from evaluation.stack import service_class
-from tests.support import Site, eventually
 
 BURST = 100
 """Payloads between two looks at the process."""

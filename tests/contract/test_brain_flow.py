@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 import zenoh
 
-from tests.support import Pulse, Site, eventually
+from evaluation.site import Site, eventually
+from tests.support import Pulse
 
 pytestmark = pytest.mark.long
 

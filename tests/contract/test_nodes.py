@@ -15,13 +15,13 @@ from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
+from evaluation.site import PATIENCE, Site, eventually
 from services.camera.service import CameraService
 from services.manipulation.service import ManipulationService
 from services.navigation.service import NavigationService
 from services.planner.service import PlannerService
 from services.sim.service import SimService
 from services.speech.service import SpeechService
-from tests.support import PATIENCE, Site, eventually
 
 pytestmark = pytest.mark.long
 

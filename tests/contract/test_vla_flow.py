@@ -11,7 +11,8 @@ from typing import Any
 
 import zenoh
 
-from tests.support import Pulse, Site, eventually
+from evaluation.site import Site, eventually
+from tests.support import Pulse
 
 GOALS = (
     "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal", "nav_goal", "plan_request", "object_query",

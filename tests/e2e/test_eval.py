@@ -10,7 +10,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.support import ROOT, eventually
+from evaluation.site import eventually
+from tests.support import ROOT
 
 pytestmark = pytest.mark.timeout(600)
 ENVIRON = {k: v for k, v in os.environ.items() if not k.startswith("TIDYBOT")}

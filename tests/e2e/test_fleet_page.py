@@ -10,8 +10,8 @@ from aiohttp import web
 
 from cli.fleet.page import application
 from cli.processes.ports import free_port
+from evaluation.site import eventually
 from tests.e2e.test_page import Visitor, browser, pytestmark
-from tests.support import eventually
 from tests.unit.test_fleet_page import Room
 
 __all__ = ["browser", "pytestmark"]

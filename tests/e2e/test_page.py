@@ -19,10 +19,11 @@ from cli.link import Link
 from cli.processes.ports import free_port
 from common import topics
 from common.bus.session import open_session
+from evaluation.site import eventually
 from services.dashboard.config import DashboardConfig
 from services.dashboard.web.events import Sound, Words
 from services.dashboard.web.server import Web
-from tests.support import ROOT, eventually
+from tests.support import ROOT
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")

@@ -14,7 +14,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.bus.delivery import Publisher
-from tests.support import PATIENCE, ROOT, Site, eventually
+from evaluation.site import PATIENCE, Site, eventually
+from tests.support import ROOT
 
 STATUS = topics.NAVIGATION_STATUS.key
 SCENE = 'name="t"\nlow=[-1.0,-1.0]\nhigh=[1.0,1.0]\nhome={name="home",x=0.0,y=0.0}\n'

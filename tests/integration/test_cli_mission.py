@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from evaluation.site import eventually
 from tests.integration.test_cli_up import Run, read_until, run
-from tests.support import ROOT, eventually
+from tests.support import ROOT
 
 pytestmark = pytest.mark.long
 

@@ -14,7 +14,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.topic import Topic
-from tests.support import ROOT, Site, site
+from evaluation.site import Site, site
+from tests.support import ROOT
 
 BOX = m.WorldObject(label="white box", kind="box", colour="white", position=(1.0, 0.0, 1.0))
 ANSWERS = {

@@ -14,7 +14,8 @@ import psutil
 import pytest
 
 from cli.processes.ports import free_port
-from tests.support import ROOT, eventually
+from evaluation.site import eventually
+from tests.support import ROOT
 
 pytestmark = pytest.mark.long
 

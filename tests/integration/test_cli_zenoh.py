@@ -12,7 +12,7 @@ import zenoh
 from common import messages as m
 from common import topics
 from common.bus import codec
-from tests.support import Site
+from evaluation.site import Site
 
 
 def test_the_plug_in_is_installed_under_its_name() -> None:

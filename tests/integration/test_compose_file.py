@@ -16,8 +16,9 @@ from cli.link import Link
 from cli.processes.ports import free_port
 from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
+from evaluation.site import PATIENCE, end, eventually
 from tests.compose.mission import carry_out
-from tests.support import PATIENCE, ROOT, end, eventually
+from tests.support import ROOT
 
 NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SHELL = {

@@ -16,8 +16,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.topic import Topic
+from evaluation.site import Site, eventually
 from services.sim.model import own
-from tests.support import Site, eventually
 
 
 def unmet(rows: list[dict[str, object]]) -> dict[str, object]:

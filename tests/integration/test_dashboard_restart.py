@@ -8,8 +8,8 @@ from cli.processes.ports import free_port
 from cli.processes.programs import socket_path
 from cli.processes.services import SERVICES
 from cli.processes.supervision import RunInfo, Supervision
+from evaluation.site import eventually
 from services.dashboard.supervisor_client import Refused, Supervisor
-from tests.support import eventually
 
 
 @pytest.mark.timeout(120)

@@ -16,6 +16,7 @@ from common import topics
 from common.household import load_household
 from common.robot.model import Hand
 from common.scene import load_scene
+from evaluation.site import eventually
 from services.dashboard.config import DashboardConfig
 from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Click
@@ -23,7 +24,7 @@ from services.dashboard.web.server import Web
 from services.sim.model import own
 from services.sim.physics import Physics
 from tests.node import Node
-from tests.support import JOINT_NAMES, eventually
+from tests.support import JOINT_NAMES
 
 MJCF = Physics(load_scene("minimal"), 0, ()).mjcf
 SIM_MODEL = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=MJCF)

@@ -19,12 +19,12 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
+from evaluation.site import eventually
 from services.dashboard.config import DashboardConfig
 from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Sound, Words
 from services.dashboard.web.listener import PageError
 from services.dashboard.web.server import Web
-from tests.support import eventually
 
 TOKEN = "a token for these tests"
 

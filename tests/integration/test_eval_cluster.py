@@ -11,10 +11,10 @@ import pytest
 from cli.errors import CliError
 from evaluation import runner
 from evaluation.case import Result
+from evaluation.site import eventually
 from evaluation.suites.table import cases
 from evaluation.workers import cluster, pool
 from tests.network import Machine, Network, network
-from tests.support import eventually
 
 pytestmark = [
     pytest.mark.slow,

@@ -22,7 +22,7 @@ from common import topics
 from common.bus import codec
 from common.bus.session import open_session
 from common.topic import Topic
-from tests.support import Site, eventually, site
+from evaluation.site import Site, eventually, site
 
 MUG = m.WorldObject(label="red mug", kind="mug", colour="red", position=(3.0, 0.0, 0.5))
 TEXT = "bring me the red mug"

@@ -14,7 +14,7 @@ from cli.fleet.radio import router_config, thinning
 from cli.processes.ports import free_port
 from common import topics
 from common.bus.session import CONFIGS
-from tests.support import eventually
+from evaluation.site import eventually
 
 SECONDS = 2.0
 """Time of the stream [s], at some 100 Hz."""

@@ -17,14 +17,15 @@ from common.robot.joints import ARM
 from common.scene import load_scene
 from common.schemas import schema_of
 from common.topic import Topic
+from evaluation.site import Site, eventually, site
 from services.foxglove import incoming
 from services.sim.physics import Physics
 from tests.robot_side import RobotSide
-from tests.support import ROOT, Site, eventually, site
+from tests.support import ROOT
 
 pytest.importorskip("foxglove", reason="the extra foxglove is not installed")
 
-from tests.foxglove_client import FoxgloveClient
+from bench.peers.foxglove import FoxgloveClient
 
 PATIENCE = 20.0
 

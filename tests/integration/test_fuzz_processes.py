@@ -6,7 +6,7 @@ from bench.fuzz.storm import Storm
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from tests.support import Site, eventually
+from evaluation.site import Site, eventually
 
 PAYLOADS = 3000
 

@@ -19,8 +19,8 @@ from common.bus import codec, delivery
 from common.bus.session import open_session
 from common.scene import load_scene
 from common.time.clock import unix_time
+from evaluation.site import Site, eventually
 from tests.network import network
-from tests.support import Site, eventually
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 import zenoh
 
-from tests.support import ROOT, Site, eventually, site
+from evaluation.site import Site, eventually, site
+from tests.support import ROOT
 
 GOALS = ("brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal")
 QUICK = {"TIDYBOT_CLOCK": "wall", "TIDYBOT__BRAIN__SETTLE": "0.2", "TIDYBOT__BRAIN__PIPELINE": "fetch"}

@@ -15,7 +15,7 @@ from cli.processes.up import bring_up
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
-from tests.support import eventually
+from evaluation.site import eventually
 
 ITEM = "red mug"
 PATIENCE = 300.0

@@ -13,8 +13,9 @@ import pytest
 from PIL import Image
 
 from cli.processes.ports import free_port
+from evaluation.site import eventually
 from tests.integration.test_cli_up import Run, run
-from tests.support import ROOT, eventually
+from tests.support import ROOT
 
 if find_spec("mcp") is None:
     pytest.skip("the extra mcp is not installed", allow_module_level=True)

@@ -16,12 +16,12 @@ from common import messages as m
 from common import topics
 from common.household import load_household
 from common.runtime import StartError
+from evaluation.site import Site, eventually
 from services.planner.config import PlannerConfig
 from services.planner.language_model import diagnosis
 from services.planner.language_model.endpoint import EVERY, REST, installed, look
 from services.planner.service import GRACE, PlannerService
 from tests.node import Node
-from tests.support import Site, eventually
 
 SCENE = load_household("apartment")
 MUG = [

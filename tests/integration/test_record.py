@@ -14,7 +14,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.recording import Recording
-from tests.support import ROOT, Site, eventually
+from evaluation.site import Site, eventually
+from tests.support import ROOT
 
 PATIENCE = 150.0
 

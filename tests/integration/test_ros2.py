@@ -13,17 +13,17 @@ from common import topics
 from common.bus import codec
 from common.robot.joints import ARM
 from common.scene import load_scene
+from evaluation.site import Site, eventually, site
 from services.sim.physics import Physics
 from tests.robot_side import RobotSide
-from tests.support import Site, eventually, site
 
 pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk is not installed")
 
+from bench.peers.ros import QosDurability, QosProfile, RosPeer, ros_peer
 from services.ros2 import incoming, outgoing
 from services.ros2.service import TF
 from services.ros2.types import Types
-from tests.ros_peer import QosDurability, QosProfile, RosPeer, ros_peer
 
 KINDS = sorted({row.type for row in (*outgoing.ROWS, *incoming.ROWS)} | {TF})
 PUBLISHED = {

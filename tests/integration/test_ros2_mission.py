@@ -8,13 +8,13 @@ import pytest
 from cli.link import Link
 from common import topics
 from common.bus.session import open_session
+from evaluation.site import eventually
 from tests.integration.test_cli_up import Run, run
-from tests.support import eventually
 
 pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk is not installed")
 
-from tests.ros_peer import ros_peer
+from bench.peers.ros import ros_peer
 
 __all__ = ["run"]
 STRING = "std_msgs/msg/String"

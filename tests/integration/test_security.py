@@ -17,7 +17,7 @@ from cli.processes.services import NAMES
 from common import topics
 from common.bus import delivery
 from common.bus.session import open_session
-from tests.support import Site, eventually
+from evaluation.site import Site, eventually
 
 SERVICES = tuple(n for n in NAMES if n != "router")
 LAST = "service/test/health"

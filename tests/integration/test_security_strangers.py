@@ -17,8 +17,8 @@ from common.bus.session import BusError, open_session
 from common.security import tls_diagnosis
 from common.security.access import Subject
 from common.security.certificate import Identity
+from evaluation.site import Site, eventually
 from tests.network import Machine, network
-from tests.support import Site, eventually
 
 ROUTER = Subject(name="router", role="router")
 OPERATOR = Subject(name="operator", role="operator")

@@ -9,7 +9,7 @@ from common import topics
 from common.bus import codec
 from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber
 from common.topic import Topic
-from tests.support import Site, eventually
+from evaluation.site import Site, eventually
 
 OWN = topics.SLOWER_CLOCKS[10]
 

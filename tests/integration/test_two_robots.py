@@ -14,8 +14,8 @@ from cli.fleet.robots import Desk
 from cli.link import Link
 from common import topics
 from common.bus.session import open_session
+from evaluation.site import eventually
 from tests.integration.test_cli_up import Run
-from tests.support import eventually
 
 pytestmark = [pytest.mark.long, pytest.mark.slow]
 

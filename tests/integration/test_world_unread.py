@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from evaluation.site import eventually
 from tests.integration.test_cli_up import Run
-from tests.support import ROOT, eventually
+from tests.support import ROOT
 
 HOOK = """
 import os, sys

@@ -7,11 +7,11 @@ import pytest
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
 from common.messages import WorldObject
+from evaluation.site import eventually
 from services.perception.naming.observer import Observer
 from services.perception.naming.reader import Reader
 from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words, traces
 from services.perception.naming.vocabulary import common_words, taken, unlike_said
-from tests.support import eventually
 from tests.unit.painted import Box, label, view_of_boxes
 
 pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
