@@ -24,7 +24,6 @@ import psutil  # type: ignore[import-untyped]
 import zenoh
 from zenoh import handlers
 
-from bench.mission import Robot
 from cli.fleet.radio import thinning
 from cli.processes.services import NAMES, OPTIONAL
 from common import messages as m
@@ -35,6 +34,7 @@ from common.security.access import FLEET_READS
 from common.time.clock import unix_time
 from common.time.lockstep import DT
 from evaluation.site import Site, eventually, site
+from evaluation.stack import Stack
 
 PROBE = topics.POSE
 """The topic by which arrivals are counted: a stream of some size that several read."""
@@ -55,7 +55,7 @@ class Sent(NamedTuple):
 
 def record(seconds: float) -> list[Sent]:
     """What the services send in the first `seconds` of driving in a mission, with the clock that processes need."""
-    robot = Robot(seed=0)
+    robot = Stack(seed=0, settings=("brain.pipeline=fetch",), without=("planner",))
     found: list[Sent] = []
     put = robot.bus.put
 
@@ -73,6 +73,7 @@ def record(seconds: float) -> list[Sent]:
     robot.advance(seconds)
     spoken = next(s.t for s in found if s.key == topics.NAVIGATION_GOAL.key)
     kept = [s._replace(t=s.t - spoken) for s in found if 0 <= s.t - spoken < seconds]
+    robot.close()
     return sorted((*kept, *_clock(seconds)), key=lambda s: s.t)
 
 

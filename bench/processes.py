@@ -1,7 +1,8 @@
-"""The robot as processes: seconds to ready, resident memory, and a mission in lockstep; the peer is one process.
+"""The robot as processes: seconds to ready, resident memory, and a mission in lockstep.
 
 Memory is told as each process counts it, with the libraries that several share in every one, and in proportion, where
-what n processes share counts 1/n for each: that is what the whole takes.
+what n processes share counts 1/n for each: that is what the whole takes. One process instead of many is measured by
+`tidybot eval --suite fetch --pipeline fetch`.
 """
 
 import argparse
@@ -16,11 +17,9 @@ from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 
-from bench.mission import Robot, fetch
 from cli.processes.ports import free_port
 from cli.processes.programs import said_by
 
-ITEM = "red mug"
 PATIENCE = 600.0
 """Time [s] for one command: a mission of `say --wait`, on a busy machine."""
 Tidybot = Callable[..., str]
@@ -36,7 +35,7 @@ def main() -> None:
         tidybot("up", "--detach", "--speed", "max", "--port", str(free_port()))
         ready = time.perf_counter() - began
         before, started = _clock(tidybot), time.perf_counter()
-        tidybot("say", f"bring me the {ITEM}", "--wait")
+        tidybot("say", "bring me the red mug", "--wait")
         speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
         rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
         names = {row["pid"]: row["name"] for row in rows}
@@ -44,13 +43,11 @@ def main() -> None:
         names |= {supervisor.pid: "supervisor"}
         names |= {child.pid: "watchdog" for child in supervisor.children() if child.pid not in names}
         taken = {name: _memory(pid) for pid, name in names.items()}
-    alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
     rss, pss = zip(*taken.values(), strict=True)
     for name, (counted, share) in {**taken, "all": (sum(rss), sum(pss))}.items():
         print(f"{'resident, ' + name:34} {counted:8.0f} MB  {share:8.0f} in proportion")
-    print(f"{'fetch in lockstep, processes':34} {speed:8.1f} x real time")
-    print(f"{'fetch in lockstep, one process':34} {alone.robot_seconds / alone.wall_seconds:8.1f} x real time")
+    print(f"{'fetch in lockstep':34} {speed:8.1f} x real time")
 
 
 def _memory(pid: int) -> tuple[float, float]:

@@ -7,7 +7,6 @@ import os
 import platform
 import shutil
 import sys
-import tomllib
 from collections.abc import Iterator
 from datetime import datetime
 from importlib import metadata
@@ -22,7 +21,7 @@ from cli.processes.ports import listener, port_is_free
 from cli.processes.programs import said_by
 from cli.processes.supervision import Supervision, run_dir
 from common import speech_weights
-from common.config import config_dir
+from common.config import settings
 from common.installation import ROOT
 from common.rendering import backend
 from common.security import keys
@@ -184,9 +183,7 @@ def machine() -> Iterator[Finding]:
 
 def robots() -> Iterator[Finding]:
     """Which robot the simulation has, and whether the official model is there as its skin."""
-    path = config_dir() / "sim.toml"
-    written = tomllib.loads(path.read_text(encoding="utf-8")).get("robot") if path.exists() else None
-    name = os.environ.get("TIDYBOT__SIM__ROBOT") or written or "tidybot"
+    name = settings().get("sim.robot", "tidybot")
     skin = "primitives" if name == "tidybot" else "the official meshes"
     yield Finding("ok", "robot", f"sim.robot = {name}: TidyBot, drawn as {skin}")
     root = os.environ.get("MENAGERIE_ROOT", "")

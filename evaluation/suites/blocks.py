@@ -1,13 +1,11 @@
 """What scenarios are made of: a random object, a command, a misunderstanding, and where things belong."""
 
-import tomllib
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from common.config import config_dir
-from common.naming.words import words_path
+from common.household import load_words
 from common.scene import ObjectSpec, Receptacle, Scene, load_scene
 from evaluation.case import Case, Line
 from evaluation.faults.messages import Rule
@@ -79,19 +77,13 @@ def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
 
 def destination(spec: ObjectSpec, scene: Scene) -> str:
     """Where an object belongs by the tidying rules: the first receptacle of the first rule; "" when none fits."""
-    for rule in _rules(words_path(config_dir())):
-        if spec.kind not in rule.get("kinds", [spec.kind]) or spec.colour not in rule.get("colours", [spec.colour]):
+    for rule in load_words(config_dir()).tidy:
+        if (rule.kinds and spec.kind not in rule.kinds) or (rule.colours and spec.colour not in rule.colours):
             continue
-        for name in rule["to"]:
+        for name in rule.to:
             if found := _receptacle(name, scene):
                 return found.name
     return ""
-
-
-@cache
-def _rules(path: Path) -> list[dict[str, list[str]]]:
-    found: list[dict[str, list[str]]] = tomllib.loads(path.read_text(encoding="utf-8")).get("tidy", [])
-    return found
 
 
 def _receptacle(name: str, scene: Scene) -> Receptacle | None:

@@ -3,7 +3,6 @@
 The formats are in docs/WORLDS.md.
 """
 
-import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +10,7 @@ from common.config import config_dir
 from common.floor_plan import Strict
 from common.household import Household, load_household, load_words, mapped
 from common.kinds import kind_of
-from common.plan_tables import parse
+from common.plan_tables import parse, read
 from common.scene import ObjectSpec, Scene, SceneError, load_scene
 from evaluation.case import Case, Expect, Line
 from evaluation.suites.blocks import WORDINGS, random
@@ -108,9 +107,7 @@ def _read(found: Found) -> tuple[Asked, ...]:
     path = found.cases
     assert path is not None
     try:
-        rows = parse(tomllib.loads(path.read_text(encoding="utf-8")), CaseFile, path).case
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise WorldsError(f"{path}: not valid TOML: {error}") from None
+        rows = parse(read(path), CaseFile, path).case
     except SceneError as error:
         raise WorldsError(str(error)) from None
     for row in rows:

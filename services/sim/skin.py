@@ -4,7 +4,6 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
-import fast_simplification
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from common.geometry import Array
 from services.sim.menagerie import RobotError
 from services.sim.robot import HULL_GROUP, MAST, ROBOT_GROUP
-from services.sim.things.thinning import CARE, corners
+from services.sim.things.thinning import corners, decimated
 
 THEIRS = {"base": "base_link", "arm_base": "gen3/base_link", "gripper": "base"}
 """Our bodies whose names are others there."""
@@ -83,8 +82,4 @@ def _text(values: Any) -> str:
 def simplified(model: Any, mesh: int) -> tuple[Array, NDArray[np.int64]]:
     """Corners (n, 3) [m] and triangles (k, 3) of a compiled mesh, decimated to at most `FACES` or little more."""
     vertices, triangles = corners(model, mesh)
-    if len(triangles) <= FACES:
-        return vertices, triangles
-    fewer, left = fast_simplification.simplify(vertices, triangles, target_count=FACES, agg=CARE)
-    # A corner where surfaces meet may be thrown beyond the body: it stays within its bounds.
-    return np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0)), left
+    return (vertices, triangles) if len(triangles) <= FACES else decimated(vertices, triangles, FACES)

@@ -8,7 +8,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from bench.mission import Robot, fetch
 from common import config, topics
 from common import messages as m
 from common.household import load_household, load_words, told
@@ -23,6 +22,7 @@ from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
 from services.planner.world import believed
 from services.sim.objects import geoms
+from tests.mission import Robot, fetch
 from tests.node import Node
 
 TEA = str(Path(__file__).parents[2] / "examples" / "tea.toml")

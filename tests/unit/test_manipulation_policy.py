@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bench.mission import Robot
 from cli.demonstrations.sampler import Sampler
 from common import messages as m
 from common import topics
@@ -24,6 +23,7 @@ from services.manipulation.execution.policy import (
     state_of,
 )
 from services.sim.model import own
+from tests.mission import Robot
 from tests.unit.led_arm import PERIOD, LedArm
 
 MUG = m.ObjectRef(label="red mug", position=(0.62, 0.0, 0.65), size=(0.074, 0.074, 0.095), kind="mug")

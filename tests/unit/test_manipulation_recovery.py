@@ -3,10 +3,10 @@
 import msgspec
 import pytest
 
-from bench.mission import Robot
 from common import messages as m
 from common import topics
 from services.manipulation.execution.recovery import at_carry
+from tests.mission import Robot
 from tests.unit.test_manipulation_service import wait
 
 ITEM = "red mug"

@@ -6,7 +6,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from bench.mission import Robot
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
@@ -27,6 +26,7 @@ from services.manipulation.grasps.target import Target
 from services.manipulation.service import ManipulationService
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
+from tests.mission import Robot
 from tests.node import Node
 from tests.support import JOINT_NAMES
 

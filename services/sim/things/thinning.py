@@ -30,6 +30,13 @@ def corners(model: Any, number: int) -> tuple[Array, NDArray[np.int64]]:
     return np.array(body_extent.corners(model, number), np.float64), np.array(body_extent.triangles(model, number))
 
 
+def decimated(vertices: Array, triangles: NDArray[np.int64], wanted: int) -> tuple[Array, NDArray[np.int64]]:
+    """Corners (n, 3) and triangles (k, 3) of a mesh with about as few triangles as are `wanted`."""
+    fewer, left = fast_simplification.simplify(vertices, triangles, target_count=wanted, agg=CARE)
+    # A corner where surfaces meet may be thrown beyond the body: it stays within its bounds.
+    return np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0)), left
+
+
 def simplified(model: Any, number: int, share: float) -> Mesh:
     """A compiled mesh with its texture coordinates, and about a `share` of its triangles."""
     vertices, faces = corners(model, number)
@@ -43,8 +50,7 @@ def simplified(model: Any, number: int, share: float) -> Mesh:
         return _shared(vertices[faces.ravel()], uv)
     # Along the seams of its picture a mesh is cut: sewn up first, or it would tear there.
     sewn, index = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
-    fewer, left = fast_simplification.simplify(sewn, index.ravel()[faces], target_count=target, agg=CARE)
-    fewer = np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0))
+    fewer, left = decimated(sewn, index.ravel()[faces], target)
     return _shared(fewer[left].reshape(-1, 3), mapped(vertices[faces], uv.reshape(-1, 3, 2), fewer[left]))
 
 

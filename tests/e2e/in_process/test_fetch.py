@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from bench.mission import Outcome, Robot, fetch
 from common import topics
 from common.sound import read_wav
+from tests.mission import Outcome, Robot, fetch
 
 pytestmark = pytest.mark.long
 
