@@ -9,11 +9,13 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import ROOM, clearance
+from common.geometry import wrap
 from common.household import told
 from common.scene import load_scene
 from common.viewpoints import viewpoints_of
 from common.whereabouts import points_at
 from services.brain.config import BrainConfig
+from services.brain.recoveries.step_back import BACK
 from services.brain.world.standing_poses import place_pose, standing_pose
 from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
@@ -471,6 +473,21 @@ def test_the_next_grab_is_tried_from_the_stance_that_manipulation_told_and_only_
     approach(bench, 3)
     bench.did(bench.manip(3))
     assert bench.nav(1).goal == "return_to_start"
+
+
+def test_what_slipped_away_is_looked_for_on_the_floor_from_farther_back() -> None:
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1)
+    bench.did(bench.manip(1), "failed", "SLIPPED")
+    see(bench, 2, found=False)
+    goal = bench.next_goal(POSE, 2)
+    x, y, theta = goal.x, goal.y, goal.theta
+    assert goal.object is None and min(BACK) <= math.dist((x, y), MUG_AT[:2]) <= max(BACK)
+    assert abs(wrap(math.atan2(MUG_AT[1] - y, MUG_AT[0] - x) - theta)) < 0.01
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    see(bench, 3)
+    assert bench.next_goal(POSE, 3).object is not None
 
 
 def test_what_manipulation_sends_elsewhere_for_is_no_try_as_long_as_it_has_other_stances() -> None:

@@ -10,12 +10,14 @@ from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
 from services.brain.recoveries.regrasp import grab_failed, regrasp
 from services.brain.recoveries.search import can_go_on, report_not_found, search
+from services.brain.recoveries.step_back import may_have_fallen, step_back
 from services.brain.steps.identify import not_plain
 
 AFTER_LOOKING = (
     Recovery("several_match", several_match, ask_which),
     Recovery("look_closer", unsure, look_closer),
     Recovery("identify", may_be, ask_whether),
+    Recovery("step_back", may_have_fallen, step_back),
     Recovery("search", can_go_on, search),
     Recovery("look_at_the_rest", unseen_from_near, look_at_the_rest),
     Recovery("identify_at_last", remains_possible, ask_about_the_rest),

@@ -54,16 +54,23 @@ def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:
 
 
 # --- where the base can stand to see another side of an object, by the floor plan
-def reading_pose(floor_plan: FloorPlan, point: Point, here: Pose2, seen_from: Sequence[float]) -> Pose2 | None:
+def reading_pose(
+    floor_plan: FloorPlan,
+    point: Point,
+    here: Pose2,
+    seen_from: Sequence[float],
+    distances: Sequence[float] = DISTANCES,
+) -> Pose2 | None:
     """A pose (x, y, theta) [map] that faces the point (2,), APART from the directions [rad] from there to where it was
-    seen from, near it and near `here`; None where the plan leaves no room for one in the point's room."""
+    seen from, near it and near `here`; None where the plan leaves no room for one in the point's room at one of the
+    `distances` [m]."""
     room = floor_plan.room_at(*point)
     options: list[tuple[float, Pose2]] = []
     for k in range(DIRECTIONS):
         angle = math.tau * k / DIRECTIONS
         if not shows_another_side(angle, seen_from):
             continue
-        for distance in DISTANCES:
+        for distance in distances:
             x, y = point[0] + distance * math.cos(angle), point[1] + distance * math.sin(angle)
             if floor_plan.room_at(x, y) is room and clearance(floor_plan, x, y) >= ROOM:
                 cost = distance + WAY_COST * math.dist((x, y), here[:2])
