@@ -6,6 +6,7 @@ from typing import Any, TextIO
 
 import msgspec
 
+from common import messages as m
 from common.time.clock import monotonic
 
 OFTEN, SELDOM = 0.2, 10.0
@@ -16,6 +17,24 @@ def show(args: argparse.Namespace, value: Any, lines: Iterable[str]) -> None:
     """Print `value` as one line of JSON where `--json` was given, else the `lines` that tell people of it."""
     for line in [msgspec.json.encode(value).decode()] if args.json else lines:
         print(line)
+
+
+def state_line(state: m.BrainState) -> str:
+    """`  12.3 s  NAVIGATING  step  detail`."""
+    return "  ".join(w for w in (f"{state.t:8.1f} s  {state.state:11}", state.step, state.detail) if w)
+
+
+class NewStates:
+    """Tells of the brain's states, of each once."""
+
+    def __init__(self) -> None:
+        self._shown: tuple[str, ...] = ()
+
+    def line(self, state: m.BrainState) -> str:
+        """The state as a line, "" when nothing but its time is new."""
+        now = state.state, state.step, state.detail
+        new, self._shown = now != self._shown, now
+        return state_line(state) if new else ""
 
 
 class ProgressLine:

@@ -20,7 +20,7 @@ from rich.tree import Tree
 from cli.link import Link, Watch, linked, robot_command
 from common import messages as m
 from common import topics
-from common.mission_log.states import limb_words
+from common.mission_log.states import limb_words, under_way
 from common.mission_log.transcript import PEOPLE, Transcript
 from common.process.health_records import HealthRecords
 from common.time.clock import monotonic
@@ -88,8 +88,7 @@ def mission(picture: Picture) -> Group:
     head = Text(state.state, style="bold")
     head.append(f"  {state.detail}", style=FAINT)
     rows.append(head)
-    ended = state.last.id if state.last else ""
-    if state.command and state.mission_id not in ("", ended):
+    if state.command and under_way(state):
         rows.append(Text(f"“{state.command}”  step {state.step}  for {max(0.0, state.t - state.started):.0f} s"))
     plan = picture.get(topics.ACTION_PLAN)
     if plan is not None and state.pipeline == "vla":

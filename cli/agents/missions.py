@@ -12,9 +12,10 @@ from anyio.to_thread import run_sync
 from cli.errors import CliError
 from cli.link import Link, linked
 from cli.missions.conversation import KEPT, Conversation
-from cli.processes.up import state_line
+from cli.output import state_line
 from common import messages as m
 from common import topics
+from common.mission_log.states import under_way
 from common.time.clock import monotonic
 
 T = TypeVar("T")
@@ -112,10 +113,9 @@ class Missions:
         """End the mission under way; the robot stands still then, and its brake stays open."""
         async with self.link() as link:
             talk = await run_sync(Conversation, link)
-            under_way = talk.state.mission_id if talk.state.command else ""
-            if not under_way or (talk.state.last is not None and talk.state.last.id == under_way):
+            if not (talk.state.command and under_way(talk.state)):
                 return "no mission is under way"
-            talk.mission_id = under_way
+            talk.mission_id = talk.state.mission_id
             self._send(link, "cancel")
             ended = await run_sync(talk.outcome, KEPT)
             return f"{ended.command!r} is {ended.outcome}: {ended.reason}"

@@ -12,12 +12,12 @@ from cli.link import Link, Watch
 from cli.missions.audio import Player, recorded
 from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.missions.verdict import Verdict, Witness
-from cli.output import ProgressLine
+from cli.output import NewStates, ProgressLine
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import free_port, port_is_free
 from cli.processes.programs import said_by
 from cli.processes.supervision import Supervision, run_dir
-from cli.processes.up import Stopped, bring_up, check_free, interruptible, state_line
+from cli.processes.up import Stopped, bring_up, check_free, interruptible
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
@@ -40,7 +40,7 @@ class Screen:
 
     def __init__(self) -> None:
         self._line = ProgressLine(sys.stdout)
-        self._shown = ""
+        self._states = NewStates()
         self._began = monotonic()
         self._ended = 0.0
         self.robot = self._first = 0.0
@@ -50,9 +50,7 @@ class Screen:
         print(text, flush=True)
 
     def state(self, state: m.BrainState) -> None:
-        line = state_line(state)
-        if line[11:] != self._shown:
-            self._shown = line[11:]
+        if line := self._states.line(state):
             self.say(line)
 
     def start(self, robot: float) -> None:

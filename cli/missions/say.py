@@ -9,9 +9,10 @@ from cli.errors import CliError, checked
 from cli.link import Watch, linked, robot_command
 from cli.missions.audio import recorded
 from cli.missions.conversation import ACCEPT, INSTEAD, KEPT, Answer, Conversation, Show, speak_into, typed
-from cli.output import show
+from cli.output import NewStates, show
 from common import messages as m
 from common import topics
+from common.mission_log.states import under_way
 from common.time.clock import monotonic
 
 
@@ -63,14 +64,11 @@ def _told(said: str, mission_id: str, why: str, outcome: m.MissionOutcome | None
 
 def _shower(args: argparse.Namespace) -> Show:
     """Print every new state while waiting, unless only JSON is wanted."""
-    shown = ""
+    states = NewStates()
 
     def show(state: m.BrainState) -> None:
-        nonlocal shown
-        line = f"{state.state}  {state.step}  {state.detail}".rstrip()
-        if args.wait and not args.json and line != shown:
-            shown = line
-            print(f"{state.t:8.1f} s  {line}", flush=True)
+        if args.wait and not args.json and (line := states.line(state)):
+            print(line, flush=True)
 
     return show
 
@@ -78,8 +76,7 @@ def _shower(args: argparse.Namespace) -> Show:
 def status_record(state: m.BrainState, system: m.SystemStatus | None) -> dict[str, object]:
     """What `tidybot status --json` prints."""
     mission: dict[str, object] | None = None
-    ended = state.last.id if state.last else ""
-    if state.command and state.mission_id not in ("", ended):
+    if state.command and under_way(state):
         mission = {"id": state.mission_id, "command": state.command, "step": state.step, "started": state.started}
     last: dict[str, object] | None = None
     if state.last is not None:

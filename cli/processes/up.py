@@ -11,12 +11,12 @@ from typing import TypeVar
 
 from cli.errors import CliError, port_number
 from cli.link import Link, Watch
+from cli.output import NewStates
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import port_is_free
 from cli.processes.programs import socket_path
 from cli.processes.services import NAMES, OPTIONAL
 from cli.processes.supervision import Supervision, run_dir
-from common import messages as m
 from common import speech_weights, topics
 from common.bus.session import NoRouter, open_session
 from common.installation import ROOT
@@ -162,17 +162,10 @@ def failure(supervision: Supervision, name: str, detail: str) -> str:
     return f"{name} failed{': ' + detail if detail else ''}; its last words:\n{lines}"
 
 
-def state_line(state: m.BrainState) -> str:
-    """`  12.3 s  NAVIGATING  step  detail`."""
-    words = [f"{state.t:8.1f} s  {state.state:11}"]
-    words += [w for w in (state.step, state.detail) if w]
-    return "  ".join(words)
-
-
 def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> None:
     """Print what changes until interrupted, or until supervisord ends."""
     seen: dict[str, tuple[int, str]] = {}
-    shown = ""
+    told = NewStates()
     with (
         contextlib.suppress(NoRouter),
         open_session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session,
@@ -180,8 +173,7 @@ def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> 
         watch = Watch(Link(session, plan.connect), topics.BRAIN_STATE)
         while not supervision.died():
             state = watch.next(0.5)
-            if state is not None and (line := state_line(state))[11:] != shown:
-                shown = line[11:]
+            if state is not None and (line := told.line(state)):
                 say(line)
             try:
                 processes = supervision.processes()
