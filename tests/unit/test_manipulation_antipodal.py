@@ -1,6 +1,7 @@
 """Grasps on measured surfaces: where the pads come to lie on things of no known kind."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,8 @@ from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLIPPERY, SLOPING, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp
-from services.manipulation.grasps.pads import LONGEST, PLAY, STEEPEST, contact_at
+from services.manipulation.grasps.pads import BEHIND_PAD, FINGER_HALF, LONGEST, PLAY, STEEPEST, contact_at, contacts
+from services.manipulation.grasps.parts import across_parts
 from services.manipulation.grasps.surface import SPACING, surface
 from services.manipulation.grasps.target import Target
 
@@ -70,6 +72,59 @@ def test_both_pads_lie_on_the_surface_and_the_tips_stay_off_the_table(name: str)
         tip = grasp.pose.position + PAD * grasp.pose.rotation[:, 2]
         assert tip[2] >= thing.bottom + PLAY - 1e-6
     assert len({g.name for g in found}) == len(found)
+
+
+def flat(inside: Callable[[Array, Array], Array], thick: float, seed: int = 0) -> Target:
+    """A flat thing as it is seen from above, uneven by the noise of depth: `inside` its outline [m]."""
+    rng = np.random.default_rng(seed)
+    x, y = (a.ravel() for a in np.meshgrid(*(np.arange(-0.12, 0.12, 0.006),) * 2))
+    x, y = x + rng.uniform(-0.003, 0.003, x.shape), y + rng.uniform(-0.003, 0.003, y.shape)
+    keep = inside(x, y)
+    points = np.stack([x, y, np.full(x.shape, thick / 2)], axis=1)[keep]
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    points[:, :2] -= (low + high) / 2
+    size = (*(float(v) for v in high - low), thick)
+    return target("irregular", size, points + rng.normal(0.0, 0.0012, points.shape))
+
+
+def test_an_upper_face_is_no_slope_of_the_sides_below_it() -> None:
+    """Of the highest cells only some hold anything, of the middle of the upper face, where that is uneven."""
+    along, height = (a.ravel() for a in np.meshgrid(np.arange(-0.03, 0.031, 0.004), np.arange(0.0005, 0.0096, 0.003)))
+    sides = [np.stack([along, np.full(along.shape, y), height], axis=1) for y in (-0.02, 0.02)]
+    top = np.stack([np.arange(-0.03, 0.031, 0.008), np.full(8, 0.004), np.full(8, -0.002)], axis=1)
+    found = contacts(np.concatenate([*sides, top]), (np.array([0.0, 0.0, -1.0]), -0.0095), OPENING)
+    held = [contact for at, contact in found if abs(at[0]) < 0.02 and contact.width == pytest.approx(0.04)]
+    assert held
+    assert max(contact.slope for contact in held) < 0.1
+
+
+def test_the_lower_finger_of_a_leaning_hand_stays_off_the_table() -> None:
+    c, s = math.cos(0.6), math.sin(0.6)
+    stick = flat(lambda x, y: (np.abs(c * x + s * y) < 0.03) & (np.abs(c * y - s * x) < 0.014), 0.024)
+    leaning = [grasp for grasp in grasps(stick) if abs(float(grasp.pose.rotation[2, 1])) > 0.05]
+    assert leaning
+    for grasp in leaning:
+        corners = [
+            (x, side * (grasp.width / 2 + thick), PAD)
+            for x in (-FINGER_HALF, FINGER_HALF)
+            for side in (1, -1)
+            for thick in (0.0, BEHIND_PAD)
+        ]
+        reached = grasp.pose.position + np.array(corners) @ grasp.pose.rotation.T
+        assert reached[:, 2].min() > stick.bottom
+
+
+def test_a_handle_is_taken_across_wherever_the_whole_of_it_points() -> None:
+    """A mirror whose handle goes off askew: the rectangle around it says nothing of that."""
+    across, along = math.radians(50), np.array([math.cos(math.radians(140)), math.sin(math.radians(140))])
+
+    def inside(x: Array, y: Array) -> Array:
+        handle = (np.abs(x * math.cos(across) + y * math.sin(across)) < 0.009) & (x * along[0] + y * along[1] > 0.0)
+        found: Array = (np.hypot(x - 0.03, y) < 0.045) | (handle & (np.hypot(x, y) < 0.12))
+        return found
+
+    told = across_parts(surface(flat(inside, 0.01)))
+    assert any(abs(math.remainder(turn - across, math.pi)) < math.radians(8) for turn in told)
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from services.manipulation.grasps.grasp import Grasp, approach_rotation, on_hand
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import PART
 from services.manipulation.grasps.pads import CELL, CELLS, LONGEST, PLAY, Contact, contacts
+from services.manipulation.grasps.parts import across_parts
 from services.manipulation.grasps.surface import guessed_along, surface
 from services.manipulation.grasps.target import Target
 
@@ -63,6 +64,8 @@ SLOPING = 0.25
 SLIPPERY, SLIDES = 0.35, 3.0
 """Tangent from which a surface costs more, and how much where it is steeper by 1: what was measured as 23 degrees is as
 often 30, which is beyond the cone of friction."""
+SHAPELESS = ("long", "irregular")
+"""Families of which a rectangle around them does not tell how their parts lie."""
 ASIDE = 0.008
 """Distance [m] of places across something that is too wide for the hand, of which parts are taken: a quarter of the
 pads' height."""
@@ -75,12 +78,12 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     """
     points, centre = surface(target), np.array(target.position)
     facing = math.atan2(target.position[1], target.position[0] - forward)
-    most = OF_LOW * min(1.0, max(1, math.ceil((target.size[2] - PLAY) / CELL[1])) / CELLS[1])
+    most = OF_LOW * min(1.0, max(1, round((target.size[2] - PLAY) / CELL[1])) / CELLS[1])
     least, guessed = THIN if min(target.size) > 2 * THIN else 0.0, guessed_along(target)
     if kind_of(target.kind).shape == "sphere":
         least = max(least, CHORD * min(target.size))
     found: list[tuple[float, Grasp]] = []
-    for rotation, tilt, off, name in _directions(target, facing):
+    for rotation, tilt, off, name in _directions(target, facing, _across(target, points)):
         if on_handle(target, rotation):
             continue
         blind = GUESSED * abs(float(rotation[:, 1] @ guessed)) if guessed is not None else 0.0
@@ -128,9 +131,16 @@ def _from_below(grasp: Grasp) -> float:
     return LAID_DOWN if lean > MOST_UPWARD else 0.0
 
 
-def _directions(target: Target, facing: float) -> Iterator[tuple[Array, int, float, str]]:
-    """Rotations (3, 3) of the hand with their tilt [deg] and bearing [rad] off `facing`."""
-    own = [math.degrees(math.remainder(target.yaw - facing + q * math.pi / 2, math.pi)) for q in (0, 1)]
+def _across(target: Target, points: Array) -> list[float]:
+    """The level directions [rad] in which something is plainly taken: along its sides, and across its narrow parts."""
+    sides = [target.yaw, target.yaw + math.pi / 2]
+    return [*sides, *across_parts(points)] if target.points is not None and target.family in SHAPELESS else sides
+
+
+def _directions(target: Target, facing: float, across: list[float]) -> Iterator[tuple[Array, int, float, str]]:
+    """Rotations (3, 3) of the hand with their tilt [deg] and bearing [rad] off `facing`; `across` [rad]: along which
+    the fingers close beside the usual."""
+    own = [math.degrees(math.remainder(turn - facing - math.pi / 2, math.pi)) for turn in across]
     for roll in sorted({*ROLLS, *(round(angle, 1) for angle in own)}, key=abs):
         rotation = approach_rotation(facing, math.pi / 2, math.radians(roll))
         yield rotation, 90, 0.0, f"from above, fingers at {roll:+.0f}"

@@ -11,6 +11,8 @@ from services.manipulation.grasps.clearance import FLAT, PAD, PAD_HALF
 
 FINGER_HALF = 0.0135
 """Half the width [m] of a finger."""
+BEHIND_PAD = 0.008
+"""How thick [m] a fingertip is behind its pad (Robotiq 2F-85)."""
 PLAY = 0.003
 """Least distance [m] of open fingers from the object on either side, and of their tips from what it rests on."""
 STEP = 0.02
@@ -63,24 +65,31 @@ def contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[t
     left, right = np.full(shape, -np.inf), np.full(shape, np.inf)
     np.maximum.at(left, (index[:, 0], index[:, 1]), local[:, 1])
     np.minimum.at(right, (index[:, 0], index[:, 1]), local[:, 1])
-    pads = [np.lib.stride_tricks.sliding_window_view(side, CELLS) for side in (left, -right)]
+    first, sides = _first(np.isfinite(left)), [left, -right]
+    height = float(np.ptp(local @ up))
+    if height <= 2 * PAD:
+        sides = [_without_upper_face(side) for side in sides]
+    pads = [np.lib.stride_tricks.sliding_window_view(side, CELLS) for side in sides]
     tops = [pad.max(axis=(2, 3)) for pad in pads]
     with np.errstate(invalid="ignore"):
         middle, width = (tops[0] - tops[1]) / 2, tops[0] + tops[1]
-        reach = [_passed(side) for side in (left, -right)]
+        reach = [_passed(side) for side in sides]
         fits = np.maximum(reach[0] - middle, reach[1] + middle) <= opening / 2 - PLAY
     least = tuple(2 if np.ptp(local[:, axis]) > 2 * size else 1 for axis, size in zip((0, 2), CELL, strict=True))
     shares, slopes = zip(*(_touched(pad, top, least) for pad, top in zip(pads, tops, strict=True)), strict=True)
     share, slope = np.minimum(*shares), np.maximum(*slopes)
-    first = _first(np.isfinite(left))
+    # Between whole cells the pads stay a little farther back, if something of a low thing is between them still.
+    back = min(CELL[1], max(0.0, height - PLAY)) / 2
     found = []
     for i, k in zip(*np.nonzero(fits & (width > 0) & (slope <= STEEPEST)), strict=True):
         along = float(low[0] + (i + CELLS[0] / 2 - PADDING[0]) * CELL[0])
         deep = float(low[1] + (k + CELLS[1] / 2 - PADDING[1]) * CELL[1])
         within = (k + CELLS[1] / 2 - first[i]) * CELL[1] <= HAND_DEPTH
-        if within and abs(along) <= LONGEST and deep <= _deepest(up, level, along) + 1e-6:
-            at = np.array([along, float(middle[i, k]), deep])
-            found.append((at, Contact(float(width[i, k]), float(share[i, k]), float(slope[i, k]))))
+        across, apart = float(middle[i, k]), float(width[i, k])
+        can = _deepest(up, level, along, across, apart)
+        if within and abs(along) <= LONGEST and deep <= can + back + 1e-6:
+            at = np.array([along, across, min(deep, can)])
+            found.append((at, Contact(apart, float(share[i, k]), float(slope[i, k]))))
     return found
 
 
@@ -104,12 +113,24 @@ def contact_at(surface: Array, pose: Pose) -> Contact | None:
     return Contact(sum(tops), float(np.minimum(*shares)[0, 0]), float(np.maximum(*slopes)[0, 0]))
 
 
-def _deepest(up: Array, level: float, along: float) -> float:
-    """How far along the approach [m] the pads' middle can be without a fingertip below `level`."""
-    down = -float(up[2])
-    # The lowest corner of the tips: PAD beyond the middle, half a finger to either side.
-    tip = float(up[0]) * along - abs(float(up[0])) * FINGER_HALF
+def _deepest(up: Array, level: float, along: float, across: float = 0.0, width: float = 0.0) -> float:
+    """How far along the approach [m] the pads' middle can be, `along` and `across` it, with no fingertip below `level`
+    where they are `width` apart.
+    """
+    turn, lean, down = float(up[0]), float(up[1]), -float(up[2])
+    # The lowest corner of the tips: PAD beyond the middle, half a finger to either side, behind the lower pad.
+    tip = turn * along - abs(turn) * FINGER_HALF + lean * across - abs(lean) * (width / 2 + BEHIND_PAD)
     return (tip - level) / down - PAD if down > 1e-3 else math.inf
+
+
+def _without_upper_face(side: Array) -> Array:
+    """The outermost in each cell but the first on the hand's way where that is far behind the next: of something no
+    higher than the pads it holds an upper face, which begins anywhere in it, and would read as the slope of a side.
+    """
+    found, columns, at = side.copy(), np.arange(len(side)), np.isfinite(side).argmax(axis=1)
+    upper = side[columns, at] < side[columns, np.minimum(at + 1, side.shape[1] - 1)] - STEEPEST * CELL[1]
+    found[columns[upper], at[upper]] = -np.inf
+    return found
 
 
 def _first(filled: Array) -> Array:
