@@ -245,8 +245,5 @@ class PlanBuilder:
 
 def same(a: list[PlanStep], b: list[PlanStep]) -> bool:
     """Equal but for what is said."""
-    return [_bare(s) for s in a] == [_bare(s) for s in b]
-
-
-def _bare(step: PlanStep) -> PlanStep:
-    return step if step.action == "say" else msgspec.structs.replace(step, text="")
+    one, other = ([s if s.action == "say" else msgspec.structs.replace(s, text="") for s in steps] for steps in (a, b))
+    return one == other

@@ -12,7 +12,7 @@ import pytest
 import zenoh
 
 from evaluation.site import Site, eventually
-from tests.support import Pulse
+from tests.contract.brain_peer import BrainPeer, brain
 
 pytestmark = pytest.mark.long
 
@@ -21,30 +21,19 @@ READ_BY_BRAIN = (
     "brain/speech_result", "brain/navigation_status", "brain/manipulation_status", "voice_command", "action_plan",
     "object_pose", "navigation_feedback", "joint_states", "world/objects", "speech/status", "sim/status",
 )  # fmt: skip
-JOINTS = {"t": 0.0, "name": ["base_x"], "position": [0.0], "velocity": [0.0], "effort": [0.0]}
 Seen = tuple[float, str, dict[str, Any]]
 
 
-class Peer:
-    """Plays simulation, speech, navigation and manipulation; remembers what arrived, with its arrival time [s]."""
+class Peer(BrainPeer):
+    """Remembers what arrived, with its arrival time [s]."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self.session = session
-        self.joints = Pulse(session, "joint_states", json.dumps(JOINTS))
+        super().__init__(session)
         self.seen: list[Seen] = []
-        self.sent_at: list[float] = []
 
     def receive(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
         self.seen.append((time.monotonic(), key, json.loads(sample.payload.to_bytes())))
-
-    def put(self, key: str, **fields: Any) -> None:
-        self.sent_at.append(time.monotonic())
-        self.session.put(key, json.dumps(fields))
-
-    def raw(self, key: str, payload: bytes) -> None:
-        self.sent_at.append(time.monotonic())
-        self.session.put(key, payload)
 
     def goals(self) -> list[Seen]:
         return [s for s in list(self.seen) if s[1] in (SPEECH, NAVIGATION, MANIPULATION)]
@@ -62,20 +51,6 @@ class Peer:
     def states(self) -> list[str]:
         names = [fields["state"] for _, key, fields in list(self.seen) if key == "brain/state"]
         return [n for i, n in enumerate(names) if i == 0 or n != names[i - 1]]
-
-    def answer(self, key: str, goal: dict[str, Any], **fields: Any) -> float:
-        """Result a goal; returns the moment just before."""
-        self.put(key, goal_id=goal["id"], attempt=goal["attempt"], **fields)
-        return self.sent_at[-1]
-
-    def heard(self, goal: dict[str, Any], text: str) -> float:
-        return self.answer("brain/speech_result", goal, text=text)
-
-    def drove(self, goal: dict[str, Any], status: str = "arrived", **more: Any) -> float:
-        return self.answer("brain/navigation_status", goal, status=status, **more)
-
-    def did(self, goal: dict[str, Any], status: str = "done", **more: Any) -> float:
-        return self.answer("brain/manipulation_status", goal, status=status, **more)
 
     def state_is(self, name: str) -> dict[str, Any]:
         def found() -> dict[str, Any] | None:
@@ -95,22 +70,9 @@ def shown_state(session: zenoh.Session) -> dict[str, Any]:
 @contextmanager
 def scripted(here: Site, joints: bool = True, **parameters: str) -> Iterator[Peer]:
     """A brain process and the scripted peer that plays everybody else."""
-    with here.session() as session:
-        peer = Peer(session)
-        keys = (SPEECH, NAVIGATION, MANIPULATION, "brain/state", "system_status")
-        subscribers = [session.declare_subscriber(key, peer.receive) for key in keys]
-        # Nobody speaks here: the brain waits for as long as a sentence would take, or this long.
-        quick = {"say_timeout": "1.0", **parameters}
-        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in quick.items()}
-        process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch", **changes)
-        here.wait_alive(session, "brain")
-        if joints:
-            peer.joints.start()
+    keys = (SPEECH, NAVIGATION, MANIPULATION, "brain/state", "system_status")
+    with brain(here, Peer, "fetch", keys, joints, **parameters) as peer:
         yield peer
-        peer.joints.stop()
-        assert process.poll() is None, here.log("services.brain")
-        for subscriber in subscribers:
-            subscriber.undeclare()
 
 
 def test_a_whole_mission(here: Site) -> None:
@@ -195,8 +157,7 @@ SLOW = pytest.mark.slow
 def test_five_seconds_before_listening_again(here: Site, failure: bytes) -> None:
     with scripted(here) as peer:
         peer.goal(1, "listen")
-        peer.raw("brain/speech_result", failure)
-        failed = peer.sent_at[-1]
+        failed = peer.raw("brain/speech_result", failure)
         again_at, again = peer.goal(2, "listen")
         assert again_at - failed >= 5.0
         assert "ERROR" not in peer.states()

@@ -12,12 +12,11 @@ from typing import Any
 import zenoh
 
 from evaluation.site import Site, eventually
-from tests.support import Pulse
+from tests.contract.brain_peer import BrainPeer, brain
 
 GOALS = (
     "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal", "nav_goal", "plan_request", "object_query",
 )  # fmt: skip
-JOINTS = {"t": 0.0, "name": ["base_x"], "position": [0.0], "velocity": [0.0], "effort": [0.0]}
 MUG_AT = [-1.5, -2.2, 0.55]
 FETCH = [
     {"action": "find", "object": "red mug"},
@@ -27,12 +26,11 @@ FETCH = [
 ]
 
 
-class Peer:
-    """Plays every other node; remembers goals and system states in order."""
+class Peer(BrainPeer):
+    """Remembers goals and system states in order."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self.session = session
-        self.joints = Pulse(session, "joint_states", json.dumps(JOINTS))
+        super().__init__(session)
         self.goals: list[tuple[str, dict[str, Any]]] = []
         self.system: list[str] = []
         self.grips: list[float] = []
@@ -46,9 +44,6 @@ class Peer:
         else:
             self.goals.append((key, fields))
 
-    def put(self, key: str, **fields: Any) -> None:
-        self.session.put(key, json.dumps(fields))
-
     def next(self, key: str, **expected: Any) -> dict[str, Any]:
         """The next goal, which must be this one."""
         eventually(lambda: self.goals, f"{key} {expected}")
@@ -58,12 +53,6 @@ class Peer:
 
     def speech(self, text: str) -> dict[str, Any]:
         return self.next("brain/speech_goal", goal=text)
-
-    def drove(self, goal: dict[str, Any], status: str = "arrived", **more: Any) -> None:
-        self.put("brain/navigation_status", status=status, goal_id=goal["id"], attempt=goal["attempt"], **more)
-
-    def did(self, goal: dict[str, Any], status: str = "done", **more: Any) -> None:
-        self.put("brain/manipulation_status", status=status, goal_id=goal["id"], attempt=goal["attempt"], **more)
 
     def moved(self, goal: dict[str, Any], status: str = "arrived", **more: Any) -> None:
         """As a navigator that knows `nav_goal` and `navigation_feedback` alone."""
@@ -101,27 +90,15 @@ class Peer:
 @contextmanager
 def scripted(here: Site, deaf: str = "", **parameters: str) -> Iterator[Peer]:
     """A brain and its peer, which does not subscribe to the goal `deaf`."""
-    with here.session() as session:
-        peer = Peer(session)
-        keys = (*GOALS, "system_status", "gripper_command")
-        subscribers = [session.declare_subscriber(key, peer.receive) for key in keys if key != deaf]
-        # Nobody speaks here: the brain waits for as long as a sentence would take, or this long.
-        quick = {"say_timeout": "1.0", **parameters}
-        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in quick.items()}
-        process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
-        here.wait_alive(session, "brain")
-        peer.joints.start()
+    keys = {*GOALS, "system_status", "gripper_command"} - {deaf}
+    with brain(here, Peer, "vla", keys, **parameters) as peer:
 
         def waits() -> bool:
-            replies = list(session.get("brain/state", timeout=2.0))
+            replies = list(peer.session.get("brain/state", timeout=2.0))
             return bool(replies) and json.loads(replies[0].ok.payload.to_bytes())["state"] == "WAITING"
 
         eventually(waits, "the brain waits for a command")
         yield peer
-        peer.joints.stop()
-        assert process.poll() is None, here.log("services.brain")
-        for subscriber in subscribers:
-            subscriber.undeclare()
 
 
 def logged(here: Site) -> list[tuple[str, str]]:
@@ -134,10 +111,10 @@ def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
         peer.session.put("voice_command", "bring me the blue mug")
         peer.speech("say Did you say bring me the blue mug?")
         listen = peer.speech("listen")
-        peer.put("brain/speech_result", text="no, the red mug", goal_id=listen["id"], attempt=1)
+        peer.heard(listen, "no, the red mug")
         peer.speech("say Did you say bring me the red mug?")
         listen = peer.speech("listen")
-        peer.put("brain/speech_result", text="yes", goal_id=listen["id"], attempt=1)
+        peer.heard(listen, "yes")
         request = peer.next("plan_request", command="bring me the red mug", rejected=None)
         peer.put("action_plan", request_id="another", steps=FETCH)
         peer.put("action_plan", request_id=request["id"], steps=[{"action": "grasp", "object": "sofa"}])
@@ -188,7 +165,7 @@ def test_speech_that_fails_is_asked_again_after_five_seconds(here: Site) -> None
         peer.session.put("voice_command", "bring me the red mug")
         peer.speech("say Did you say bring me the red mug?")
         listen = peer.speech("listen")
-        peer.put("brain/speech_result", text="ERROR", goal_id=listen["id"], attempt=1)
+        peer.heard(listen, "ERROR")
         failed = time.monotonic()
         peer.speech("say Did you say bring me the red mug?")
         assert time.monotonic() - failed >= 5.0

@@ -2,10 +2,12 @@
 
 from typing import Any
 
+import msgspec
 import pytest
 from rich.console import Console
 
 from cli import watch
+from cli.missions.say import status_record
 from common import messages as m
 from common import topics
 from common.topic import Topic
@@ -87,6 +89,19 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
         "root", "wait", "inner", "folded", "do", "drive", "leaf  2 m left",
     ]  # fmt: skip
     assert shown.count("heard: bring me the mug") == 1
+
+
+def test_a_mission_that_goes_on_under_its_old_name_is_under_way(picture: watch.Picture) -> None:
+    stopped = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="cancelled", reason="stopped")
+    state = m.BrainState(
+        state="NAVIGATING", mission_id="m-1", command="bring me the mug", t=21.0, started=10.0, last=stopped
+    )
+    picture.now = {topics.BRAIN_STATE.key: state}
+    assert "for 11 s" in text(picture)
+    assert status_record(state, None)["mission"] is not None
+    ended = msgspec.structs.replace(state, state="COMPLETED")
+    picture.now = {topics.BRAIN_STATE.key: ended}
+    assert "for 11 s" not in text(picture) and status_record(ended, None)["mission"] is None
 
 
 def test_it_fits_a_narrow_terminal(picture: watch.Picture) -> None:
