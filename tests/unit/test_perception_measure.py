@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from common.geometry import Array
 from common.kinds import LOOKS
 from common.naming.looks import likely
+from services.perception.shapes import primitives, turned
 from services.perception.shapes.measure import Measurement, measure
 from services.perception.unlisted import MOST_POINTS, measures_of, thinned
 
@@ -198,3 +199,15 @@ def test_points_are_few_and_on_the_surface() -> None:
     assert 50 < len(points) <= MOST_POINTS
     rho = np.hypot(points[:, 0] - 0.2, points[:, 1] - 0.1)
     assert np.median(np.abs(rho[points[:, 2] < FLOOR + 0.11] - 0.04)) < 0.003
+
+
+def test_nothing_that_is_turned_is_wider_than_its_outline() -> None:
+    rng, eye = np.random.default_rng(3), np.array([0.0, -1.2, 0.5])
+    drill = np.concatenate([
+        rng.uniform((-0.1, -0.02, 0.15), (0.1, -0.019, 0.19), (280, 3)),
+        rng.uniform((-0.1, -0.02, 0.188), (0.1, 0.02, 0.19), (140, 3)),
+        rng.uniform((0.0, -0.018, 0.05), (0.035, -0.017, 0.15), (120, 3)),
+    ])  # fmt: skip
+    outline = primitives.silhouette(drill, eye, (True, True), 0.0008)
+    found = turned.standing(drill, 0.19, outline, eye, NOISE, np.zeros(len(drill), bool))
+    assert found.size[0] < 0.25 or found.residual > 0.03

@@ -32,6 +32,9 @@ VESSEL = (0.05, 0.17)
 """Least and most height [m] of what is tried with a handle."""
 
 
+WIDER, WIDTH_COST = 1.15, 0.3
+"""Width of a turned shape by that of its outline up to which it may be one, and the share of what it is wider that
+counts as off. Chosen: the error of an outline at 2 m; as a ball's height counts."""
 INNER_PART = 0.6
 """Share of the radius within which the upper end of a vessel is its bottom or its opening, and no rim."""
 FLAT, LEVEL_SHARE = 0.006, 0.8
@@ -113,11 +116,14 @@ def standing(
     if math.isnan(handle) and _on_one_side(points[:, :2] - (x, y), beyond):
         handle = math.atan2(*(points[beyond, :2].mean(axis=0) - (x, y))[::-1])
         off = np.where(beyond, np.minimum(off, noise), off)
+    # Of what is turned the outline shows the whole width; nan where an end is hidden.
+    beyond_it = 2 * widest - WIDER * outline.distance * float(np.ptp(outline.ends)) - noise
+    too_wide = WIDTH_COST * beyond_it if beyond_it > 0.0 else 0.0
     flared = grows > 0.25 or radii[-1] > 1.25 * radii[1]
     shape: ShapeFamily = "bowl" if hollow and (flared or h < 1.1 * widest) else "round"
     return Measurement(
         shape, x, y, 0.0 if math.isnan(handle) else handle, (2 * widest, 2 * widest, h),
-        float(np.minimum(off, 0.02).mean()), spread(solution, slice(0, 3)),
+        float(np.minimum(off, 0.02).mean()) + too_wide, spread(solution, slice(0, 3)),
         profile=tuple(round(float(v) / widest, 2) for v in radii), hollow=hollow, handle=handle, free=5,
         end="open" if hollow else "closed" if _closed(points, rho, float(radii[-2]), h, eye, noise) else "",
     )  # fmt: skip
