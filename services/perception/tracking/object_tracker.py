@@ -81,6 +81,9 @@ class ObjectTracker:
         self._fallen = [t for t in self._fallen if not self._is_found(t, seen)]
         for track in missing:
             track.misses += 1
+            if track.seen_at > track.looked_at and self._is_found(track, seen):
+                track.misses = self._gone_after
+                continue
             fresh = [t for t in self._tracks if t.began > max(track.began, now - FRESH) and t.id in seen]
             heir = moved_here(track, fresh)
             if heir is not None:
