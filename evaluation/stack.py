@@ -73,11 +73,10 @@ class Stack:
         replaced: tuple[str, ...] = (),
         swaps: Mapping[str, Swap] | None = None,
         state_dir: Path | None = None,
-        log_level: str = "error",
     ) -> None:
         self.scene = load_scene(scene) if isinstance(scene, str) else scene
         self.household = household or told(self.scene, load_words(config.config_dir()))
-        self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
+        self.seed, self._state_dir = seed, state_dir
         kept = ("sim.run=stack", "brain.run=stack") if state_dir else ()
         # Many a run never hears or says anything.
         self._changes = config.overrides({}, ("speech.preload=false", *kept, *settings))
@@ -102,7 +101,7 @@ class Stack:
         parameters = config.load(kind.NAME, kind.CONFIG, config.config_dir(), self._changes)
         io = MemoryIo(
             self.bus, kind.NAME, kind.READS, kind.WRITES, household=self.household, seed=self.seed, clock=self._clock,
-            world=self.scene if getattr(kind, "KNOWS_WORLD", False) else None, log_level=self._log_level,
+            world=self.scene if getattr(kind, "KNOWS_WORLD", False) else None, log_level="error",
         )  # fmt: skip
         if kind.NAME == "sim":
             io.out_stamp = -1
@@ -213,10 +212,3 @@ class Stack:
         """The answer of `sim/truth`."""
         found: dict[str, Any] = json.loads(self.bus.get(topics.SIM_TRUTH) or b"{}")
         return found
-
-    def play(self, samples: Any) -> None:
-        """Put 16 kHz int16 audio (n,) to speech recognition at the pace of robot time."""
-        for n, start in enumerate(range(0, len(samples), 1600)):
-            data = samples[start : start + 1600].tobytes()
-            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, seq=n))
-            self.advance(0.1)

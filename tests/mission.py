@@ -1,6 +1,5 @@
 """Fetch missions of the real services in one process, judged as the evaluation judges."""
 
-import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,14 +21,10 @@ PATIENCE = 400.0
 class Outcome:
     """How a mission went, by what the brain said and by what physics says."""
 
-    seed: int
-    item: str
     claimed: str = "none"
     reason: str = ""
     evidence: Evidence = field(default_factory=Evidence)
     claims: list[Claim] = field(default_factory=list)
-    robot_seconds: float = 0.0
-    wall_seconds: float = 0.0
     states: list[str] = field(default_factory=list)
 
     @property
@@ -41,20 +36,25 @@ class Outcome:
 class Robot(Stack):
     """Every service of the fetch pipeline in one process, and the judge's watch."""
 
-    def __init__(
-        self, scene: str = "apartment", seed: int = 0, settings: tuple[str, ...] = (), log_level: str = "error"
-    ) -> None:
+    def __init__(self, scene: str = "apartment", seed: int = 0, settings: tuple[str, ...] = ()) -> None:
         settings = ("brain.pipeline=fetch", *settings)
-        super().__init__(scene, seed, settings, without=("planner",), log_level=log_level)
+        super().__init__(scene, seed, settings, without=("planner",))
         self.watch: Watch = self.join(Watch)
 
+    def play(self, samples: Any) -> None:
+        """Put 16 kHz int16 audio (n,) to speech recognition at the pace of robot time."""
+        for n, start in enumerate(range(0, len(samples), 1600)):
+            data = samples[start : start + 1600].tobytes()
+            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, seq=n))
+            self.advance(0.1)
 
-def fetch(robot: Robot, item: str, seed: int, speech: Any = None) -> Outcome:
+
+def fetch(robot: Robot, item: str, speech: Any = None) -> Outcome:
     """Ask for an item and step until the brain has reported; `speech` is 16 kHz audio, else the words are typed."""
-    outcome = Outcome(seed, item)
+    outcome = Outcome()
     while robot.state().state != "LISTENING":
         robot.tick()
-    begin, started = robot.now, time.perf_counter()
+    begin = robot.now
     goal = Goal((Want(item, (robot.scene.delivery,)),))
     observer = robot.watch.observer
     observer.begin()
@@ -71,8 +71,6 @@ def fetch(robot: Robot, item: str, seed: int, speech: Any = None) -> Outcome:
         if state.last is not None and state.state == "LISTENING" and len(outcome.states) > 2:
             outcome.claimed, outcome.reason = state.last.outcome, state.last.reason
             break
-    outcome.robot_seconds = robot.now - begin
-    outcome.wall_seconds = time.perf_counter() - started
     robot.advance(WATCH)
     outcome.evidence, outcome.claims = observer.conclude(goal), observer.claims
     return outcome

@@ -221,8 +221,6 @@ _FOR_ME = re.compile(
     r"please$|$| and | then )"
 )
 """Taking something for somebody is bringing it."""
-FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")
-"""A frame, which makes a request of what follows."""
 
 
 def without_politeness(text: str) -> str:

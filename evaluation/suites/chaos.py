@@ -12,7 +12,6 @@ CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING",
 CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain", "sim")
 EVERY = "every one"
 MISTREATED: tuple[Kind, ...] = ("drop", "duplicate", "delay", "reorder")
-FAULTS = ("kill", "hang", "router loss", "disk full", "disk full, kill", "clock jump", *MISTREATED)
 PARAMETERS: dict[str, dict[str, float]] = {
     "hang": {"seconds": 3.0}, "router loss": {"seconds": 5.0}, "disk full": {"full": 30.0},
     "disk full, kill": {"full": 30.0}, "clock jump": {"jump": 2.0},

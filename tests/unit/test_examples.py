@@ -46,7 +46,7 @@ def test_the_odometer_adds_up_a_circle() -> None:
 @pytest.mark.timeout(600)
 def test_a_tea_tin_of_ones_own_is_fetched() -> None:
     robot = Robot(TEA, seed=1, settings=("brain.pipeline=fetch",))
-    outcome = fetch(robot, "tea tin", 1)
+    outcome = fetch(robot, "tea tin")
     assert outcome.claimed == "delivered", outcome.reason
     assert outcome.objections == []
 

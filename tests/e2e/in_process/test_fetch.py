@@ -23,7 +23,7 @@ def seen(outcome: Outcome) -> list[str]:
 @pytest.mark.timeout(420)  # by ray casting, five times as slow as with GL, on a machine that does other work
 def test_a_recorded_voice_brings_the_mug_home() -> None:
     robot = Robot(seed=7)  # in the next room: half the way of most
-    outcome = fetch(robot, "red mug", 7, speech=read_wav(VOICE))
+    outcome = fetch(robot, "red mug", speech=read_wav(VOICE))
     assert outcome.claimed == "delivered", outcome.reason
     assert outcome.objections == []
     assert seen(outcome) == FLOW
@@ -33,7 +33,7 @@ def test_a_recorded_voice_brings_the_mug_home() -> None:
 @pytest.mark.parametrize(("seed", "item"), [(3, "apple"), (2, "blue bottle"), (10, "yellow block")])
 def test_other_things_are_brought_as_well(seed: int, item: str) -> None:
     robot = Robot(seed=seed)
-    outcome = fetch(robot, item, seed)
+    outcome = fetch(robot, item)
     assert outcome.claimed == "delivered", outcome.reason
     assert outcome.objections == []
 
