@@ -1,13 +1,14 @@
 """Recovery: what was found and is not seen there any more may lie on the floor before it: look from farther back."""
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.find import LocateObject
 from services.brain.steps.leaf import Settle
 from services.brain.steps.views import GoAndLook
-from services.brain.tree.composites import Sequence
+from services.brain.tree.composites import Condition, Sequence
 from services.brain.world.standing_poses import reading_pose
 
 BACK = (1.2, 1.4, 1.6)
@@ -18,7 +19,7 @@ rolls comes towards the robot."""
 class StepBack(GoAndLook):
     """Drives to where the floor shows before what the `item` was found on."""
 
-    NOTHING_LEFT = ("NOT_FOUND", "it was not found before, or there is no room to look from")
+    NOTHING_LEFT = ("NOT_FOUND", "there is no room to look from")
 
     def __init__(self, ctx: Context, item: str) -> None:
         super().__init__("step_back", ctx)
@@ -38,9 +39,10 @@ class StepBack(GoAndLook):
 
 
 def step_back(ctx: Context, task: Task) -> Behaviour:
-    """Look once from farther back."""
+    """Look once from farther back, if it was found before."""
     look = LocateObject("look_from_there", ctx, task.item)
-    return Sequence("from_farther_back", StepBack(ctx, task.item), Settle("settle", ctx), look)
+    back = Sequence("from_farther_back", StepBack(ctx, task.item), Settle("settle", ctx), look)
+    return Condition("was_found", back, lambda: task.item in ctx.mission.search.found, Status.FAILURE)
 
 
 def may_have_fallen(ctx: Context) -> bool:
