@@ -1,6 +1,7 @@
 """What the hand cannot bring as it grasped it is tipped, where it does not fall then."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,15 +28,15 @@ def from_above(size: tuple[float, float, float], points: Array | None = None) ->
     return GraspedObject("thing", "", hand, np.array([0.0, 0.0, 0.025]), size, 0.022, 0.0, points=points)
 
 
-def rod() -> GraspedObject:
+def rod(radius: float = 0.011) -> GraspedObject:
     turns = np.linspace(0.0, math.tau, 40)
-    seen = [[x, 0.011 * math.cos(t), 0.011 * math.sin(t)] for x in (-0.12, 0.0, 0.12) for t in turns]
-    return from_above((0.24, 0.022, 0.022), np.array(seen))
+    seen = [[x, radius * math.cos(t), radius * math.sin(t)] for x in (-0.12, 0.0, 0.12) for t in turns]
+    return from_above((0.24, 2 * radius, 2 * radius), np.array(seen))
 
 
-def placed(held: GraspedObject) -> PlacePlan:
-    worktop = Obstacle((0.66, 0.0, WORKTOP - SLAB / 2), (0.6, 1.6, SLAB), 0.0)
-    return plan_place(PLANNER, held, SPOTS, WORKTOP, DROP, [worktop], REST)
+def placed(held: GraspedObject, height: float = WORKTOP) -> PlacePlan:
+    worktop = Obstacle((0.66, 0.0, height - SLAB / 2), (0.6, 1.6, SLAB), 0.0)
+    return plan_place(PLANNER, held, SPOTS, height, DROP, [worktop], REST)
 
 
 def test_a_rod_from_above_is_rolled_onto_a_surface_as_high_as_the_elbow() -> None:
@@ -44,6 +45,13 @@ def test_a_rod_from_above_is_rolled_onto_a_surface_as_high_as_the_elbow() -> Non
     assert hand.rotation[2, 2] > -0.97, "straight down the arm does not come there"
     along = hand.rotation @ rod().rotation.T @ (1.0, 0.0, 0.0)
     assert abs(along[2]) < 0.05, "it is rolled about its own length, and neither end is in the air"
+
+
+@pytest.mark.parametrize("higher", [0.06, 0.1])
+def test_what_is_as_thick_as_a_whisk_is_rolled_farther_onto_what_is_higher(higher: float) -> None:
+    held = replace(rod(0.03), offset=np.array([0.0, 0.0, 0.035]), width=0.06)
+    hand = PLANNER.arm.pose(placed(held, WORKTOP + higher).lower[-1])
+    assert hand.rotation[2, 2] > -math.cos(math.radians(31)), "tipped by 30 degrees the arm does not come there"
 
 
 def test_it_is_taken_so_that_it_can_be_put_where_it_belongs() -> None:
@@ -59,6 +67,11 @@ def test_it_is_taken_so_that_it_can_be_put_where_it_belongs() -> None:
         return float(plan.grasp.pose.rotation[2, 2])
 
     assert slant(None) < -0.99 < slant(WORKTOP), "from straight above it could only be taken"
+
+
+@pytest.mark.parametrize("degrees", [45, 60])
+def test_what_stands_is_not_tipped_past_its_balance(degrees: float) -> None:
+    assert not tipped(from_above((0.06, 0.06, 0.2)), (0.5, 0.0), 0.0, math.radians(degrees))
 
 
 def test_what_would_fall_over_is_not_tipped() -> None:

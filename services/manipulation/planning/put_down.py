@@ -10,11 +10,13 @@ from services.manipulation.grasps.grasped_object import GraspedObject
 
 TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi)
 """How far [rad] the hand is turned about the vertical, off the way from the arm to the spot, in the order of trying."""
-LEANS = (math.radians(15), math.radians(30))
+LEANS = tuple(math.radians(degrees) for degrees in (15, 30, 45, 60))
 """How far [rad] the hand is tipped away from the arm, with what it holds, where it cannot come as it grasped: from
-straight above it comes to nothing that is higher than 0.85 m."""
+straight above it comes to nothing that is higher than 0.85 m, and from 60 degrees to what is on a worktop."""
 SPINS, TRIED = 24, 4
 """In how many directions what is tipped is turned, and how many of these, those it falls least from, are tried."""
+ON_THE_WAY = (0.25, 0.5, 0.75, 1.0)
+"""Shares of how far it is tipped at which that is looked at: tipped over its edge a box lies on its side at last."""
 FALLS = 0.008
 """How far [m] the middle of what is let go may come down until it lies: less than the centimetre that counts as
 dropped."""
@@ -42,12 +44,16 @@ def turned(held: GraspedObject, spot: tuple[float, float], heading: float) -> Pu
 
 def tipped(held: GraspedObject, spot: tuple[float, float], bearing: float, lean: float) -> list[PutDown]:
     """It is tipped by `lean` [rad] so that the hand comes more from the arm's side, those first from which it falls
-    back least; empty where it would fall."""
-    tip = turn_matrix(lean * np.array([math.sin(bearing), -math.cos(bearing), 0.0]))
+    back least; empty where it would fall back, or over, from there or on the way there."""
+    axis = np.array([math.sin(bearing), -math.cos(bearing), 0.0])
+    tips = [turn_matrix(share * lean * axis) for share in ON_THE_WAY]
     found = []
     for spin in np.linspace(0.0, math.tau, SPINS, endpoint=False):
-        turn = tip @ yaw_matrix(float(spin))
-        found.append((held.reaches(turn) - held.reaches(np.eye(3)), float(spin), turn))
+        turns = [tip @ yaw_matrix(float(spin)) for tip in tips]
+        rises = [held.reaches(turn) - held.reaches(np.eye(3)) for turn in turns]
+        # Lower again than it was on the way, it is past its balance.
+        falls = max(*map(abs, rises), 2 * (max(rises) - rises[-1]))
+        found.append((falls, float(spin), turns[-1]))
     least = sorted(found, key=lambda entry: entry[:2])[:TRIED]
     # A finger is lower than what it holds: the way goes on down from there until one or the other is felt.
     return [PutDown(spot, turn, spin, FALLS) for raised, spin, turn in least if raised < FALLS]
