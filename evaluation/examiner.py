@@ -23,16 +23,12 @@ QUIET = 40.0
 """Time [s] of quiet after which a case without an outcome is over."""
 
 
-class ExaminerConfig(Config, frozen=True):
-    """The examiner has no parameters: everything is in the case."""
-
-
 class Examiner:
     """`done` once the case is over; then `observed` holds what was seen. `examiner_of` gives it its case."""
 
     NAME = "examiner"
     HZ = 20
-    CONFIG = ExaminerConfig
+    CONFIG = Config
     KNOWS_WORLD = True
     READS = (
         topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
@@ -41,7 +37,7 @@ class Examiner:
     WRITES = (topics.SPEECH_TEXT, topics.AUDIO_PCM, topics.VOICE_COMMAND)
     case: Case
 
-    def __init__(self, config: ExaminerConfig, io: Io) -> None:
+    def __init__(self, config: Config, io: Io) -> None:
         self._case, self._io = self.case, io
         self._dialogue = Dialogue(self._case, io, self.HZ)
         self._observer = Observer(io.world)

@@ -27,7 +27,7 @@ from common.process.service_process import Process
 from common.scene import load_scene
 from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
-from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
+from evaluation.examiner import Examiner, examiner_of
 from evaluation.faults.physical.faults import targets
 from evaluation.faults.processes import ProcessFaultInjector, unavailable
 from evaluation.faults.reports import FaultReportFile
@@ -92,9 +92,7 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     stop, clock = Ended(progress), SimClock()
     shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
     with open_session(plan.connect, plan.namespace) as session:
-        process = Process(
-            examiner_of(case), ExaminerConfig(), shared, household, session, clock, stop, directory, world
-        )
+        process = Process(examiner_of(case), config.Config(), shared, household, session, clock, stop, directory, world)
         examiner: Examiner = process.service
         injected = FaultReportFile(directory / FAULT_REPORTS)
         injector = ProcessFaultInjector(supervision, case.timed_faults, directory, injected.report)

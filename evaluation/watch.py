@@ -7,16 +7,12 @@ from judge.evidence import Sample
 from judge.observer import Observer
 
 
-class WatchConfig(Config, frozen=True):
-    """The watcher has no parameters."""
-
-
 class Watch:
     """Feeds an `Observer` with what the simulation and the robot publish, at 20 Hz."""
 
     NAME = "watch"
     HZ = 20
-    CONFIG = WatchConfig
+    CONFIG = Config
     KNOWS_WORLD = True
     READS = (
         topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_CONTACTS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
@@ -24,7 +20,7 @@ class Watch:
     )  # fmt: skip
     WRITES = ()
 
-    def __init__(self, config: WatchConfig, io: Io) -> None:
+    def __init__(self, config: Config, io: Io) -> None:
         self._io = io
         self.observer = Observer(io.world)
 

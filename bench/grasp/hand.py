@@ -12,12 +12,13 @@ from common import messages as m
 from common import topics
 from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.bus.memory import MemoryBus, MemoryIo
+from common.config import Config
 from common.geometry import Pose2, compose, inverse, yaw_quat
 from common.household import told
 from common.scene import ObjectSpec, Scene, body_name
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
-from evaluation.watch import Watch, WatchConfig
+from evaluation.watch import Watch
 from judge.effects import Effect
 from judge.evidence import Want
 from judge.goal import Goal
@@ -59,7 +60,7 @@ class Bench:
         io = MemoryIo(self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, **home)
         self.world.add(ManipulationService(config, io), io)
         io = MemoryIo(self.bus, Watch.NAME, Watch.READS, Watch.WRITES, world=alone, **home)
-        watch = Watch(WatchConfig(), io)
+        watch = Watch(Config(), io)
         self.world.add(watch, io)
         self.observer = watch.observer
         self.goal = Goal((Want(spec.name, (scene.delivery,)),))

@@ -11,9 +11,10 @@ from rich.console import Console
 
 from common import messages as m
 from common import topics
+from common.config import Config
 from common.scene import Scene
 from evaluation.case import Case, Line, Observed, Result, TimedFault
-from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
+from evaluation.examiner import Examiner, examiner_of
 from evaluation.faults.messages import Rule, faulty
 from evaluation.faults.reports import FaultReport
 from evaluation.report.matrix import cell, chaos_tables, tally
@@ -154,9 +155,7 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
     case = Case(suite="chaos", seed=0, name="brain NAVIGATING", command="fetch", lines=(Line("fetch"),))
     # The states alone: there is no simulation to be seen.
     following = type("Following", (examiner_of(case),), {"step": Examiner.follow})
-    node = Node(
-        following, ExaminerConfig(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home)
-    )
+    node = Node(following, Config(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home))
     examiner: Examiner = node.service
 
     def show(state: str, step: str, mission: str = "m-1") -> None:
@@ -185,9 +184,7 @@ def test_each_line_of_a_conversation_waits_for_the_end_of_the_mission_before_it(
         self._talk(now)
 
     talking = type("Talking", (examiner_of(case),), {"step": step})
-    node = Node(
-        talking, ExaminerConfig(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home)
-    )
+    node = Node(talking, Config(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home))
 
     def said(state: str, mission: str = "") -> list[str]:
         node.send(topics.BRAIN_STATE, m.BrainState(state=state, mission_id=mission))  # type: ignore[arg-type]
