@@ -59,7 +59,7 @@ class Tape:
 
     def __init__(self, recorder: Recorder, listener: Listener, wall_clock: bool) -> None:
         self._recorder, self._listener, self._wall_clock = recorder, listener, wall_clock
-        self.now = self.began = 0.0
+        self.now = 0.0
         self._running = False
         self.alive: set[str] = set()
         self.lockstep = False
@@ -99,7 +99,7 @@ class Tape:
             return
         self.now, self.lockstep = tick.t, tick.lockstep
         if not self._running:
-            self._running, self.began = True, tick.t
+            self._running = True
 
     def _tokens(self) -> None:
         """Who is there, as messages: `service/<name>/alive`."""

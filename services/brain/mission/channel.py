@@ -49,7 +49,6 @@ class Channel:
         self.goal_id = ""
         self.attempt = 0
         self.result: Result | None = None
-        self.ignored = 0
         self._topic: Topic[Any] | None = None
         self._message: Any = None
         self._epoch = self._known = ""
@@ -118,7 +117,6 @@ class Channel:
         """Take a status if it counts; the first final one stands. An attempt of 0 is one the peer did not state."""
         ours = not goal_id or (goal_id == self.goal_id and (not attempt or not self.attempt or attempt == self.attempt))
         if not self.outstanding or not ours:
-            self.ignored += 1
             if goal_id and goal_id not in self._recent:
                 self._io.count_drop(f"{self.peer} answers", f"answer to a goal that is not ours: {goal_id[:40]!r}")
             return False

@@ -39,7 +39,7 @@ class StateEstimator:
     alone, `fresh`: a scan arrived in this step."""
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
-        self._config, self._io, self._map = config, io, costmap
+        self._io, self._map = io, costmap
         self.field = distance_field(io.household, config.lidar_height)
         home = io.household.home
         self.localiser = Localiser(self.field, (home.x, home.y, home.theta))
