@@ -60,7 +60,6 @@ class Tape:
     def __init__(self, recorder: Recorder, listener: Listener, wall_clock: bool) -> None:
         self._recorder, self._listener, self._wall_clock = recorder, listener, wall_clock
         self.now = 0.0
-        self._running = False
         self.alive: set[str] = set()
         self.lockstep = False
         self.status: m.SimStatus | None = None
@@ -98,8 +97,6 @@ class Tape:
         except codec.DecodeError:
             return
         self.now, self.lockstep = tick.t, tick.lockstep
-        if not self._running:
-            self._running = True
 
     def _tokens(self) -> None:
         """Who is there, as messages: `service/<name>/alive`."""
