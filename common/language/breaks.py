@@ -98,11 +98,20 @@ _BEHIND = re.compile(
 )
 """Before a reason that is said behind a request."""
 _PURPOSE = re.compile(
-    r"(?:\s*[,.;?!]+)?\s+(?:because |since |as |so (?:that )?)?(?:i|we) (?:really |just |still )*"
+    r"(?:\s*[,.;?!]+)?\s+(?:because |since |as |so (?:that )?)?(?:(?:i|we) (?:really |just |still )*"
     r"(?:want|need|have(?: got)?|would like|am (?:about|going)|are (?:about|going)|wish|intend|plan) to "
-    r"(?!(?:have|get|see|know|hear|be|go|put|take|bring|use|borrow)\b)(?!.*\b(?:you|robot|instead)\b)[^.;?!,]*[.!\s]*$"
+    r"(?!(?:have|get|see|know|hear|be|go|put|take|bring|use|borrow)\b)"
+    r"|it is (?:high |about )?time (?:(?:for (?:me|us|\w+) )?to|(?:i|we)) |(?:he|she|they|mum|dad|(?:my|our|the) \w+) "
+    r"(?:(?:really |just |still )*(?:wants?|needs?|ha(?:s|ve)(?: got)?|would like|(?:is|are) (?:about|going)) to "
+    r"|asked for it|(?:is|are) (?:waiting|asking) for (?!you\b)))(?!.*\b(?:you|robot|instead)\b)[^.;?!,]*[.!\s]*$"
 )
 """What is wanted for something, said behind a request: no more is asked for by it."""
+_NEEDED_TO = re.compile(
+    r"^(?P<said>(?:i|we) (?:really )?(?:need|want|would like) (?:a|an|some|the|my) (?:\w+ ){1,4}?)to "
+    r"(?!be\b|go\b|stand\b|drink\b|"
+    r"eat\b|come\b|have\b|stay\b|write\b)\w+ (?:this|that|these|the|my|our|a|an|some|with|it|up)\b[^.,;!?]*"
+)
+"""A wish, and what it is wanted for: `a pair of scissors to open this parcel`."""
 _MAY_I_HAVE = re.compile(r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?(?:have|get|use|borrow)\b")
 _TELLS_WHERE = re.compile(r"^(?:it|they) (?:is|are) (?:\w+ ){0,2}?(?:in|on|at|next|near|beside|under|behind)\b")
 
@@ -120,6 +129,7 @@ def without_reason_behind(text: str) -> str:
 
 def without_purpose(text: str) -> str:
     """`get me the hammer, i want to hang up a picture` without what it is wanted for."""
+    text = _NEEDED_TO.sub(r"\g<said>", text)
     found = _PURPOSE.search(text)
     head = text[: found.start()] if found else ""
     return head if _requests(head) or _MAY_I_HAVE.match(head) else text
@@ -133,15 +143,16 @@ def _requests(text: str) -> bool:
 def with_breaks(text: str) -> str:
     """The text with a full stop between what is told and what is asked for."""
     for _ in range(LONGEST):
-        at = _break(text)
-        if at is None:
-            return text
+        if (at := _break(text)) is None:
+            break
         text = f"{text[: at[0]].rstrip(' ,')} . {text[at[1] :]}"
-    return text
+    first, but, second = text.partition(" but ")
+    apart = but and first.split()[0] in DETERMINERS and is_statement(first, ended=True)
+    return f"{first.rstrip(' ,')} . {second}" if apart and is_statement(second) else text
 
 
 def _break(text: str) -> tuple[int, int] | None:
-    begin = max((text.rfind(mark) for mark in ".;!?"), default=-1) + 1
+    begin = max(text.rstrip(" .;!?").rfind(mark) for mark in ".;!?") + 1
     for pattern in (_STRONG, _WEAK, _WITH_PRONOUN):
         for found in pattern.finditer(text, begin):
             head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]

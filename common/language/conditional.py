@@ -2,6 +2,7 @@
 
 import re
 
+from common.language.exchange import replaced, verb_first
 from common.language.lexicon import COMMANDING, HANDLING
 from common.language.politeness import without_politeness
 
@@ -47,6 +48,14 @@ _IF_ANY = re.compile(
     r"available)),? (?:and )?(?:otherwise|if not|or else|else),? (?P<other>.+)$"
 )
 """A condition in the middle, of the thing that was just named."""
+_FAILING = re.compile(
+    r"^(?P<command>(?!if\b|is\b|are\b).+?),? (?:(?:or|and|but) )?(?:if (?:you (?:can|do|could|did) not "
+    r"(?:find|see|get|spot|have) "
+    r"(?:it|one|that|any|them)|(?:it|that|one) is not (?:there|around|available)|there is(?: not (?:one|"
+    r"any)| none)|not)"
+    r"(?: there| anywhere| any more)?|failing that),? (?:then )?(?:just )?(?P<other>.+)$"
+)
+"""What is wanted, and what instead where there is none."""
 _FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
 _OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
 _ELSE = re.compile(
@@ -109,6 +118,12 @@ def conditional(text: str) -> str:
         return f"if {found['thing']} is on {found['spot']} . {found['command']}"
     elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):
         return f"if you find {thing[0]} . {found['command']} . otherwise {found['other']}"
+    elif (found := _FAILING.match(bare)) and verb_first(found["command"]):
+        thing = _FIRST_THING.search(found["command"])
+        bare = without_politeness(found["other"])
+        other = bare if verb_first(bare) else replaced(found["command"], bare)
+        if thing and other:
+            return f"if you find {thing[0]} . {found['command']} . otherwise {other}"
     elif (found := _AT_END.match(bare)) and bare.split()[0] in REQUESTS and not _ASKS.search(found["command"]):
         thing = _FIRST_THING.search(found["command"])
         condition = _OF_IT.sub(thing[0] if thing else "it", found["condition"])

@@ -53,6 +53,13 @@ _GO_AND_ASK = re.compile(
     r"(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) \w+)"
 )
 """`go to the desk and see` before a question that names the place itself: the way there need not be said."""
+_AND_TELL = re.compile(
+    r"^(?P<look>(?:go (?:and )?|(?:can|could|would|will) you |please )*(?:look|check|see|find out|have a "
+    r"look|take a look)\b"
+    r"[^.;!?]*?\b(?:if|whether|what|which|how many|where|who)\b[^.;!?]+?),? and (?:then )?(?:tell|let|report)"
+    r"(?: (?:it|back|that))?(?: to)?(?: me| us)?(?: know)?[.!?]*$"
+)
+"""A look, and that it is to be told about, which it is anyway."""
 _ANNOUNCED = re.compile(
     rf"\b(?:the following|(?:the following|these|{'|'.join(NUMBERS)})(?: (?:more|other))? (?:things|items|objects))"
     r"\s*:\s*",
@@ -108,6 +115,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     told = with_preamble(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:")), is_place)
     whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
+    whole = _AND_TELL.sub(r"\g<look>", whole)
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)

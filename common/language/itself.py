@@ -22,6 +22,7 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("why", "where + did have + you + look looked search searched check checked"),
     ("rooms", f"rooms places + know are there {_YOU}"),
     ("rooms", "where + can could + you + go drive"),
+    ("limits", "how + big wide large strong far + hand hands gripper claw fingers arm + your"),
     ("holding", f"hand hands gripper claw fingers holding carrying grasping gripping + {_YOU} the + what anything "
                 f"something is are have empty free full"),
     ("holding", "what anything something + have + you + got carry hold"),
@@ -44,6 +45,14 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("abilities", "anything something + you + can not able"),
     ("capacity", "can could do able + you + carry hold lift take bring fetch manage + two three several many more once "
                  "both"),
+    ("limits", "how + much heavy high far low fast quick quickly big wide strong tall large + can could do are does "
+               "is + you your + carry lift reach hold bring drive go move grab grip strong fast tall big "
+               "heavy hand arm"),
+    ("limits", "what how which + heaviest biggest highest fastest widest largest limit limits limitations "
+    "speed payload "
+               "strength weight weigh height reach + you your"),
+    ("limits", "can could able do + you + stairs steps upstairs downstairs climb"),
+    ("doing", "are is + you everything + alright ok okay right well fine"),
     ("doing", "where + you + going headed off heading"),
     ("doing", "what + did was i + i we + ask asked tell told want wanted say said order ordered + you"),
     ("doing", "how + long longer far much soon + take takes taking need until till you it this that more longer"),
@@ -74,7 +83,7 @@ _TOPICS = tuple(_Topic(action, tuple(frozenset(g.split()) for g in row.split(" +
 WORDS: frozenset[str] = frozenset[str]().union(*(group for topic in _TOPICS for group in topic.groups))
 _REST = (
     "level state indicate house flat home apartment place many had else left along whole long we low enough use full "
-    "make remind"
+    "make remind most much go up down"
 )
 _SMALL = (SMALL_TALK | WORDS | set(_REST.split())) - {"and"}
 _ASKED = re.compile(

@@ -23,7 +23,10 @@ from common.language.wording import Wording
 MOVING: tuple[Wording, ...] = (
     # Putting.
     Wording("put", f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>"),
-    Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>"),
+    Wording(
+        "put",
+        f"(line | stack | pile | set | put | lay) (<thing> (up | out) | (up | out) <thing>) ({ON} | at) <spot>",
+    ),
     Wording("put", f"(gather | collect | bring | get | put) <thing> together ({ON} | at) <spot>"),
     Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>"),
     Wording(
@@ -38,6 +41,11 @@ MOVING: tuple[Wording, ...] = (
         f" | <thing> (belongs | belong | goes | go | should go | should stand | has to go | needs to "
         f"go) (next to | near | beside | close to) <spot>",
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
+    ),
+    Wording(
+        "refuse",
+        f"({PUT}) <thing> {BACK} (under | underneath | beneath | behind) <spot>",
+        reason="I put things on or in others, but neither under nor behind them",
     ),
     Wording("put", f"chuck <thing> {BACK} ({ON} | to | at) <spot>"),
     Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
@@ -81,7 +89,7 @@ MOVING: tuple[Wording, ...] = (
     Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | (over | [over] here) <thing>)"),
     Wording(
         "put",
-        f"({PUT}) <thing> {BACK} ({ON} | at | under | to) <spot>",
+        f"({PUT}) <thing> {BACK} ({ON} | at | to) <spot>",
         heard=f"(put | place | set) {IT} <onto> | throw {IT} (in | into) <inside> | move <thing> (to <spot> | <onto>)",
     ),
     Wording(

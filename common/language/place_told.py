@@ -38,6 +38,27 @@ _TO_BE_GOT = re.compile(
     r"(?P<where>from [^,]+?)(?: please| for me| to me)*$"
 )
 """A wish, and from where it is to be fulfilled."""
+_WHERE_TO = r"(?P<where>(?:on|in|at|by|near) (?:the|my|our|his|her|their) [^,]+?)"
+_PERSON = r"(?P<whom>(?:my|our|the) \w+|(?!(?:me|us|it|them|to|the|my|our|a|an|that)\b)\w+)"
+_IS_THERE = r"(?: (?:sitting|standing|lying|waiting|working|busy|resting|over|still|upstairs|downstairs))*"
+_FOR_SOMEBODY = (
+    re.compile(
+        rf"^(?:bring|take|give|get|fetch|hand|pass|carry) {_PERSON} (?P<thing>(?:the|a|an|my|that|some|his|"
+        rf"her) [^,]+?), "
+        rf"(?:and )?(?:he|she|they) (?:is|are){_IS_THERE} {_WHERE_TO}$"
+    ),
+    re.compile(
+        rf"^(?:bring|take|give|get|fetch|hand|pass|carry) (?P<thing>(?:the|a|an|my|that|some|his|her) [^,]+?) "
+        rf"(?:over )?(?:to|for) {_PERSON}, (?:and )?(?:he|she|they) (?:is|are){_IS_THERE} {_WHERE_TO}$"
+    ),
+    re.compile(
+        rf"^{_PERSON} (?:is|are){_IS_THERE} {_WHERE_TO}, (?:so |and )?(?:please )?"
+        r"(?:bring|take|give|get|fetch|hand|pass|carry) (?:(?:him|her|them) (?P<thing>(?:the|a|an|my|that|"
+        r"some|his) [^,]+?)"
+        r"|(?P<one>(?:the|a|an|my|that|some|his|her) [^,]+?) (?:over )?(?:to|for) (?:him|her|them))$"
+    ),
+)
+"""Something for somebody, and where that person is."""
 _SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
 
 
@@ -56,6 +77,9 @@ def _with_place(sentence: str) -> str:
     """What is to be brought or put, with where it is said to be; "" where that is not said."""
     told = sentence.rstrip(".?!; ")
     bare, end = without_politeness(told), sentence[len(told) :]
+    if for_somebody := next(filter(None, (pattern.match(bare) for pattern in _FOR_SOMEBODY)), None):
+        thing = for_somebody["thing"] or for_somebody["one"]
+        return f"take {thing} to {for_somebody['where'].partition(' ')[2]}{end}"
     if (found := _TO_BE_PUT.match(bare)) and " from " not in found["said"]:
         return f"{found['said']} from {found['where']}{found['to']}{end}"
     if found := _TO_BE_GOT.match(bare):

@@ -98,7 +98,8 @@ _ADDRESS = (
     "(?:think|see)|(?:quick|one|another|just a) question|guess what|you know what|you "
     "know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
-    "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|"
+    "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|one "
+    "(?:last|more|other|final) (?:thing|request)|"
     "(?:first|second) of all|"
     r"(?:hold|hang) on(?! (?:to|for|(?:\w+ "
     r"){1,3}(?:seconds?|minutes?|moments?|secs?))\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
@@ -106,7 +107,7 @@ _ADDRESS = (
 )
 """Words to somebody, that carry no meaning."""
 _WAY = (
-    r"(?:go|come|run|hurry|nip|pop)(?: ahead| over| on| along| off| back)?(?: and)?"
+    r"(?:go|come|run|hurry|nip|pop)(?: ahead| over| on| along| off| back| here| over here)?(?: and)?"
     r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve|look "
     r"for|search for)\b)"
 )
@@ -139,6 +140,7 @@ _FRAMES = (
     r"(?:why (?:do not|not)|how about) (?:you|we)(?=\s+\w)|(?:what|how) about(?=\s+\w+ing\b)",
     r"(?:i|we|people|everyone|everybody|they)(?: always| all| usually)?(?=\s+call\b)|let us|we "
     r"(?:should|could|must|need to|have to|ought to|want to|had better|better)",
+    r"(?:keep|hold|hang on to|hold on to) it(?: in your hand)?(?: and|,)(?= (?:go|drive|come|move|wait)\b)",
     r"(?:do )?be (?:careful|quick|gentle|good|nice|kind|sweet)(?: with it)? and(?= \w)",
     r"(?:do )?be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)",
     r"(?:(?:do not|never) (?:forget|fail)|remember|(?:make|be) sure|feel free|try|go ahead|start|"
@@ -217,7 +219,8 @@ _ENDINGS = (
 _LEAD = re.compile(rf"^(?:(?:{'|'.join((_ADDRESS, _WAY, *_FRAMES))})(?:\s+|\s*,\s*))+")
 _TAIL = re.compile(rf"(?:,?\s+(?:{'|'.join(_ENDINGS)}))+$")
 _FOR_ME = re.compile(
-    r"(?:^|(?<= and ))(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+?) for (?:me|us)(?= "
+    r"(?:^|(?<= and ))(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)((?:(?! and (?:it|"
+    rf"{A_VERB})\b).)+?) for (?:me|us)(?= "
     r"please$|$| and | then )"
 )
 """Taking something for somebody is bringing it."""

@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import IsPlace, named, verb_first
+from common.language.exchange import PREPOSITIONS, IsPlace, named, verb_first
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -12,7 +12,8 @@ _STATES = (
     "(?:kept|stored|left|lying|sitting|standing)"
 )
 _KEPT = re.compile(
-    rf"^(?:\w+, )?(?P<thing>{_THING}) (?:usually |normally |always |really )?(?:{_STATES})\b(?P<where>[^,.;!?]*?)"
+    rf"^(?:\w+, )?(?P<thing>{_THING})(?<! not) (?:usually |normally |always |really "
+    rf")?(?:{_STATES})\b(?P<where>[^,.;!?]*?)"
     r"(?:[,.;!] (?:so |and |but )?| so )(?P<request>[^.;!?]+)[.!]?$"
 )
 """Where something has its place, and what is asked for of it."""
@@ -36,6 +37,20 @@ _AT = re.compile(
     r"(?P<place>(?:the|my|our) \w+(?: \w+)?)[,.;!] (?:so |and )?(?P<request>[^.;!?]*?)(?:,? please)?[.!]?$"
 )
 """Where somebody is, and what is asked for to be there."""
+_FOR_ME = (
+    r"(?:(?:can|could|would|will) you )?(?:please )?(?:bring|get|fetch|give|hand) (?:me|us) "
+    r"(?P<thing>[^,.;!?]+?)(?:,? please)?"
+)
+_ASKER_AT = (
+    re.compile(
+        rf"^(?:\w+, )?(?:i|we) (?:am|are) (?P<where>(?:at|on|in|by) (?:the|my|our) \w+(?: \w+)?)[,.;!] "
+        rf"(?:so )?{_FOR_ME}[.!?]*$"
+    ),
+    re.compile(
+        rf"^{_FOR_ME}[,.;!?] (?:i|we) (?:am|are) (?P<where>(?:at|on|in|by) (?:the|my|our) \w+(?: \w+)?)(?: now)?[.!]*$"
+    ),
+)
+"""Something to be brought, and where the one is who asks for it."""
 _MANNER = re.compile(
     r"[,.;!]+ (?:and |but )?(?:(?:very |ever so )?(?:gently|carefully|slowly|quietly|quickly|softly)|careful(?: now)?|"
     r"(?:mind|watch) (?:the|your|my|our|out for the) \w+|watch out|easy does it|chop chop)(?:,? please)?[.!]*$"
@@ -69,6 +84,10 @@ def with_preamble(text: str, is_place: IsPlace) -> str:
             request = _BACK_THERE.sub(where, asked, count=1) if where else asked
             if (whole := named(request, told["thing"])) != request:
                 return whole
+    if asker := next(filter(None, (pattern.match(text) for pattern in _ASKER_AT)), None):
+        known = is_place(tuple(w for w in asker["where"].split()[1:] if w not in DETERMINERS))
+        if known and PREPOSITIONS.isdisjoint(asker["thing"].split()):
+            return f"take {asker['thing']} to {asker['where'].partition(' ')[2]}"
     if (at := _AT.match(text)) and verb_first(without_politeness(at["request"])):
         known = is_place(tuple(w for w in at["place"].split() if w not in DETERMINERS))
         if known and _BACK_THERE.search(at["request"]):

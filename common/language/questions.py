@@ -133,12 +133,14 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording(
         "origin",
-        "(where | (which | what) (place | table | shelf | room | surface)) (did | do | have) you"
+        "(where | [in | on | from] (which | what) (place | table | shelf | room | surface)) (did | do | have) you"
         " (get | got | take | taken | find | found | pick | fetch | have | had) <thing> [up] [from]"
         " | where (did | was | were) <thing> (stand | sit | lie | be | come from | standing | lying) [before | "
         "originally]"
         " | where (was | were) <thing> [before | originally] | where does <thing> come from",
     ),
+    Wording("limits", "how (much | heavy) can you (carry | lift) | how high can you reach | how fast can "
+    "you (go | drive)"),
     Wording("abilities", "what can you do | help [me]", heard="what can you do"),
     Wording(
         "repeat",

@@ -17,6 +17,10 @@ def _acts(verbs: str, reason: str) -> Wording:
 
 
 REFUSALS: tuple[Wording, ...] = (
+    Wording(
+        "refuse", "(go | come | drive | climb | get | take <words>) (up | down) (the | those | some) (stairs | steps)"
+        " | [<words>] (upstairs | downstairs) | climb <words>", reason="I drive on one floor and cannot climb",
+    ),
     Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
         "refuse", "(open | close | shut | lock | unlock) <words>", heard="(open | close) the <openable>",

@@ -6,6 +6,7 @@ from common.language.apposition import apposed, refined
 from common.language.contrasts import CONTRAST, contrasted, instead, with_qualities
 from common.language.exchange import PREPOSITIONS, IsPlace, replaced, verb_first
 from common.language.lexicon import A_VERB, COMMANDING, HANDLING
+from common.language.meaning import VERBS
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -30,7 +31,8 @@ _DISLOCATED = re.compile(
     r"(?P<thing>(?:the|my|a|an|all|both) [^,]+?)(?: i mean(?:t)?)?$"
 )
 _PRESENTED = re.compile(
-    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our|whichever) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
+    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our|whichever) (?!.*\b(?:does|do|is|are) not\b)[^,]+?),\s*"
+    r"(?P<rest>(?:(?:please|just|can you|"
     r"could you|would you)\s+)*\w+"
     r"(?: me)? (?:it|them|that|those|one)\b.*|"
     r"(?:what|which|where|whereabouts|how|is|are|i|we)\b[^,]* (?:it|they|them)\b.*)$"
@@ -60,7 +62,7 @@ _SPARED = re.compile(
 """What is not to be touched, said behind a command that would."""
 _SPARED_FIRST = re.compile(
     r"^(?P<spared>leave (?:the|my|our|everything) [^,]+? (?:alone|be|in peace|(?:where|as) (?:it|they) (?:is|are))),? "
-    rf"(?:and |but |just )+(?P<said>{A_VERB} .+)$"
+    rf"(?:and |but |just |only )+(?P<said>{A_VERB} .+)$"
 )
 _EXCEPT = re.compile(r",\s*(?:and |but |only |just )?(?=(?:not|except|but not|apart from|other than)\b)")
 _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
@@ -97,13 +99,19 @@ _APPOSED = re.compile(
     r"(?P<rest>.+)$"
 )
 """A thing, which one it is, and what is to be done with it."""
+_NEXT_TO_THERE = re.compile(
+    rf"^(?P<said>{A_VERB} [^,]+?) (?:on|onto|in|into|to) (?:the|my|our) [^,]+?, (?P<near>(?:right |just "
+    rf")?(?:next to|beside|"
+    r"near|close to|by|to the (?:left|right) of) [^,]+)$"
+)
+"""Where something is to be put, and next to what there."""
 _THE_ONE = re.compile(r"(?<=\w),? the one (?=(?:with|on|in|from|at|next to|near|beside) )")
 _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
-    text = _THE_ONE.sub(" ", text)
+    text = _NEXT_TO_THERE.sub(r"\g<said> \g<near>", _THE_ONE.sub(" ", text))
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
     text = refined(apposed(_without_lead(text, is_place)))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
@@ -190,6 +198,7 @@ def _without_lead(text: str, is_place: IsPlace) -> str:
         comma
         and strange
         and not verb_first(head)
+        and words[0] not in VERBS
         and not PREPOSITIONS & set(words[:1])
         and not is_place(tuple(words))
         and " " in rest.strip()

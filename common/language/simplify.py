@@ -4,7 +4,7 @@ from common.language.normalise import Words
 
 _ADVERBS = frozenset({
     "just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight", "together",
-    "somewhere", "anywhere",
+    "somewhere", "anywhere", "instead",
 })  # fmt: skip
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset(

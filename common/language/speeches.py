@@ -25,6 +25,14 @@ _CEREMONY = re.compile(
     r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))))*, (?=\w)"
 )
 """A verb of saying with a mark before what is said."""
+_TO_BE_ASKED = re.compile(
+    rf"{_BEGIN}ask (?P<whom>{_WHOM}|(?!(?:me|us|you|for|about|yourself|if|whether|it|that|this)\b)\w+)"
+    r"(?P<where> (?:in|at) (?:the|my|our) \w+(?: room)?)? (?:if|whether) (?:he|she|they) "
+    r"(?P<verb>wants?|needs?|likes?|knows?|ha(?:s|ve)|is|are|would|can|could|will) (?P<what>[^,;.]+)"
+)
+"""What somebody is to be asked."""
+_OF_THEM = {"is": "are", "are": "are", "would": "would", "can": "can", "could": "could", "will": "will"}
+"""Verbs that come before the one who is asked."""
 _THEIRS = re.compile(r"\b(?:their|his|her)\b")
 LONG_SPEECH = re.compile(
     r"^(?:(?:say|announce)(?: that)?|(?:shout|yell|call)(?: out)? that|tell (?:them|everybody|everyone|people|"
@@ -46,8 +54,24 @@ TO_BE_SAID = re.compile(r"(?:^|(?<=[,.;!?] )|(?<= and )|(?<= then )|(?<=please )
 
 def as_speech(text: str) -> str:
     """Normalised text with what is to be said behind `say` and `tell them`: `shout dinner`, `tell mum to come`."""
+    text = re.sub(r"^repeat after me[,:]? (?:and )?", "say ", text)
+    text = _TO_BE_ASKED.sub(_asked, text)
     text = _LET_KNOW.sub(r"\g<before>tell them\g<where> that ", _TOLD_TO_DO.sub(_told, text))
     return _CEREMONY.sub(r"\g<before>say ", _CRIED.sub(r"\g<before>say ", text))
+
+
+def _asked(found: re.Match[str]) -> str:
+    """`ask the boys if they want tea` as what is said to them."""
+    verb = found["verb"]
+    do = {"has": "have"}.get(verb, verb.removesuffix("s"))
+    question = f"{_OF_THEM[verb]} you" if verb in _OF_THEM else f"do you {do}"
+    whom = "" if re.match(r"the|my|our|them|him|her|every|people", found["whom"]) else f"{found['whom']} "
+    spoken = f"{whom}{question} {_THEIRS.sub('your', found['what'], count=1)}"
+    return (
+        f"{found['before']}tell them{found['where']} that {spoken}"
+        if found["where"]
+        else f"{found['before']}say {spoken}"
+    )
 
 
 def _told(found: re.Match[str]) -> str:

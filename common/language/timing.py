@@ -19,6 +19,13 @@ _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.
 _LAST = re.compile(
     rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER})$"
 )
+_REMIND = re.compile(
+    rf"^(?:(?:in|after) (?P<first>{DURATION})(?: {_LATER})?,? )?remind (?:me|us)(?: (?:in|after) (?P<time>{DURATION})"
+    rf"(?: {_LATER})?)?,? (?:to|that|about) (?P<what>.+?)(?: (?:in|after) (?P<last>{DURATION})(?: {_LATER})?)?$"
+)
+"""What somebody is to be told after a while."""
+_WAKE = re.compile(rf"^wake (?:me|us)(?: up)? (?:in|after) (?P<time>{DURATION})(?: {_LATER})?$")
+_OURS = re.compile(r"\b(?:my|our)\b")
 _PASS = re.compile(rf"^(?:let|allow|do not move)(?: for)? (?P<time>{DURATION})(?: (?:to )?(?:pass|go by|elapse))?$")
 _STAY = re.compile(
     rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
@@ -37,6 +44,10 @@ def in_time(text: str) -> str:
         going = f"go {found['to']}" if found["to"] else f"go to{_place(found['place'])}"
         rest = re.sub(r"^(?:,| and| then)+ ?", "", found["rest"] or "")
         return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
+    if (found := _REMIND.match(bare)) and (time := found["first"] or found["time"] or found["last"]):
+        return f"wait {_plain(time)} . say {_OURS.sub('your', found['what'])}"
+    if found := _WAKE.match(bare):
+        return f"wait {_plain(found['time'])} . say wake up"
     if found := _PASS.match(bare):
         return f"wait {_plain(found['time'])}"
     for pattern in (_FIRST, _JUST, _LAST):

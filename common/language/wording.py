@@ -12,8 +12,8 @@ Action = Literal[
     "recall", "wish_at", "named_at", "get", "put_held", "put_held_near",
     "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
-    "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery", "repeat",
-    "swap",
+    "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "limits", "hearing", "identity", "battery",
+    "repeat", "swap", "go_there",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/grammar/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]
@@ -21,7 +21,7 @@ QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "written", "beside", "extreme", "compare",
-        "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "hearing", "identity", "battery",
+        "rooms", "doing", "done", "why", "origin", "abilities", "capacity", "limits", "hearing", "identity", "battery",
         "rules", "belongs", "usual", "last_seen", "repeat",
     }
 )  # fmt: skip

@@ -161,6 +161,7 @@ WORDINGS: tuple[Wording, ...] = (
         f"({GO} | off you go) [over | back | along] (to | into | towards) <spot>",
         heard="drive [back] to [the] <place>",
     ),
+    Wording("go_there", f"(go | {GO}) [over | back | straight | right] there"),
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>"),
     Wording("leave", "(get | go | come) out of <spot> | (vacate | exit | leave) <spot> | (get | go) (out | away)"),
     Wording(
@@ -172,7 +173,8 @@ WORDINGS: tuple[Wording, ...] = (
         " | close to) <spot> | (park | place | put | position | station | move | bring | drive | get | take) yourself"
         " [over | back] (to | into | in | at | on | by | near | next to | beside | in front of) <spot>"
         " | make your way [over | back] (to | into) <spot>"
-        " | (show | lead | guide | accompany | take) (me | us) [the way] to <spot>",
+        " | (show | lead | guide | accompany | take) (me | us) [the way] to <spot> | meet (me | us) (in | "
+        "at | by) <spot>",
     ),
     *MOVING,
     # What is said beside a command.

@@ -196,9 +196,10 @@ class PlanBuilder:
         return self.choices.pick(options)
 
     def _set_down(self, held: BelievedObject) -> Receptacle:
-        """The nearest surface for something that is in the way."""
-        x, y, _ = self.world.pose
-        found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.center[0] - x) ** 2 + (r.center[1] - y) ** 2)
+        """Where something that is in the way was taken from, else the nearest surface."""
+        (x, y, _), origin = self.world.pose, self.world.history.taken_from.get(held.label)
+        far = {r.name: (r.center[0] - x) ** 2 + (r.center[1] - y) ** 2 for r in self.vocabulary.surfaces()}
+        found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.name != origin, far[r.name]))
         if not found:
             raise Refusal(f"I am holding the {held.label} and see no place to put it down")
         return self.choices.pick(found)

@@ -300,7 +300,6 @@ REFUSED = {
     "please do not touch the apple": "you told me not to",
     "when the bell rings bring me the mug": "I cannot wait for conditions",
     "take a picture": "I take no pictures",
-    "bring the apple to the red can": "the red can is no place",
     "what is on the bookshelf": "I have seen nothing there so far",
     "": "I did not hear a command",
     "?!": "I did not hear a command",

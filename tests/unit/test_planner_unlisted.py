@@ -106,8 +106,8 @@ def test_a_place_of_which_something_is_told_is_none_to_go_to(said: str) -> None:
     ]
 
 
-def test_a_place_where_something_is_wanted_is_asked_about() -> None:
-    assert understand(Sentence("-", "I'm in the kitchen. Bring me the duck.", "fetch(duck)")).steps == []
+def test_something_is_brought_to_where_somebody_is_told_to_be() -> None:
+    assert steps("I'm in the kitchen. Bring me the duck.") == [("find", "duck"), ("grasp", "duck"), ("place", "duck")]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
+from common.language.contractions import expand
 from common.language.exchange import PREPOSITIONS
 from common.language.mood import is_asked
 from common.language.normalise import normalise, without_determiners
@@ -18,7 +19,7 @@ from services.brain.language.offered import UNFIT, likeliest, marks_of, words_of
 _NO_NAME = frozenset({
     "one", "whichever", "of", "them", "those", "these", "will", "with", "go", "the", "please", "that", "this", "mean",
     "i", "want", "is", "take", "bring", "me", "let", "have", "get", "give", "it", "choose", "would", "like", "you",
-    "said", "mentioned", "think",
+    "said", "mentioned", "think", "need", "prefer",
 })  # fmt: skip
 _ORDINALS = {
     "first": 0, "former": 0, "earlier": 0, "1st": 0, "second": 1, "2nd": 1, "third": 2, "3rd": 2, "fourth": 3,
@@ -66,7 +67,9 @@ def chosen(
         return found
     meant = _SAID_BEFORE.sub("", normalise(answer, ","))
     words = words_of(meant)
-    likely, p = likeliest(meant, options, known, household)
+    parts = meant.split(",")
+    wanted = [part for part in parts if "not" not in expand(part).split()]  # "i will not eat it, i will throw it"
+    likely, p = likeliest(",".join(wanted) if len(wanted) < len(parts) and wanted else meant, options, known, household)
     named = any(not set(option.split()).isdisjoint(words) for option in options)
     least = FIRM if named and not UNFIT.isdisjoint(words) else SURE
     return likely if likely and p >= least else _another(words, options, known)
@@ -89,6 +92,8 @@ def _singled_out(
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     if (number := _number(words, len(options))) is not None:
         return options[number]
+    common = set(options[0].split()).intersection(*(option.split() for option in options))
+    words = words - common or words
     if words and (words <= WHICH.keys()) and (extreme := _extreme(WHICH[next(iter(words))], options, known)):
         return extreme
     bare = re.sub(r"\bneither (.+) nor ", r"not \1 not ", bare)

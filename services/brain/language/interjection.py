@@ -15,6 +15,7 @@ from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import without_politeness
 from common.language.wording import Action
 from services.brain.language.senses import AT_WORK
+from services.brain.language.turns import AFTER_DOING, INSTEAD, INSTEAD_END, LATER, LATER_END
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside", "encouragement", "idle"]
 SURE, FIRM = 0.35, 0.8
@@ -22,38 +23,6 @@ SURE, FIRM = 0.35, 0.8
 lists left out)."""
 _SAME = {"stop": "cancel", "replace": "come_back"}
 """Kinds that say more than a sense of the model."""
-_LATER = re.compile(
-    r"^(?:and )?(?:"
-    r"(?:when|once|as soon as|after) you(?: are| have)?(?: all)? "
-    r"(?:done|finished|ready|through|free|back|did|get back|come back)(?:(?: with)? (?:that|this|it))?|"
-    r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
-    r"then|after(?:wards?| that| this| it)?|next|later(?: on)?|in addition|on top of that)\b[, ]*"
-)
-"""Words before a command that put it behind the one under way."""
-_LATER_END = re.compile(
-    r"[, ]+(?:after(?:wards| that| this)?|next|later(?: on)?|too|as well|"
-    r"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back))$"
-)
-"""The same behind it."""
-_AFTER_DOING = re.compile(
-    r"^(?:and )?(?:after|once|when|as soon as) (?!(?:that|this|it)\b)(?P<you>you(?: are| have)?(?: all)? )?"
-    r"(?:(?:done|finished|ready|through)(?: with)? )?(?P<rest>.+)$"
-)
-"""Before words about the command under way, behind which the next one is to come."""
-_INSTEAD = re.compile(
-    r"^(?:no|whatever you are doing|(?:drop|leave|stop) everything(?=,? and\b|,)|before you (?:go on|carry on|continue|"
-    r"do that|do it|finish)(?: with (?:that|it|this))?|"
-    r"stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
-    r"wait(?! (?:for|here|there|in|at|by|on|until|till)\b)|sorry|"
-    r"hold on|hang on|"
-    r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?"
-    r"(?:that|it|this|(?:the|my) \w+(?: \w+)?(?=,))|never ?mind|"
-    r"scratch that|change of plans?|new plan|i(?: have|'ve)? changed my mind|actually|on second thoughts?|"
-    r"instead|rather|"
-    r"(?:do not|don't) (?:do that|bother)(?: and)?)\b[, ]+(?:and |but )?"
-)
-"""Words before a command that puts it in the place of the one under way."""
-_INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
 
 
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
@@ -64,7 +33,8 @@ _MADE = re.compile(
 _CHANGED = re.compile(r"^(?:(?:no|oh|actually|i have changed my mind|on second thoughts?),? )+")
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
-    r"(?:second|sec|moment|minute|bit|tick)$|^(?:wait|hold on|hang on)(?:,? (?:wait|hold on|hang on))*$"
+    r"(?:second|sec|moment|minute|bit|tick)(?:,? (?:the|my|there|i|someone|somebody) .+)?$|^(?:wait|hold "
+    r"on|hang on)(?:,? (?:wait|hold on|hang on))*$"
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
@@ -156,7 +126,7 @@ def _worded(said: str, words: str, doing: str) -> Interjection | None:
 
 def _control(said: str, words: str) -> Interjection | None:
     """A sentence that stops or calls off what is under way."""
-    now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
+    now: tuple[Action, ...] = ("stop", "cancel") if LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
     first, _, reason = words.partition(", ")
@@ -195,13 +165,13 @@ def _replacement(said: str, words: str, doing: str) -> Interjection | None:
         or _RATHER.match(words)
         or _MADE.match(words)
     ):
-        return Interjection("replace", _INSTEAD_END.sub("", said))
+        return Interjection("replace", INSTEAD_END.sub("", said))
     return None
 
 
 def _timed(said: str, words: str) -> Interjection | None:
     """A command with words that say when: instead of what is under way, or after it."""
-    for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
+    for kind, begin, end in (("replace", INSTEAD, INSTEAD_END), ("queue", LATER, LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:
             rest = shorter
@@ -215,7 +185,7 @@ def _timed(said: str, words: str) -> Interjection | None:
 
 def _behind(words: str, doing: str) -> str:
     """`come back` of `once you have tidied the desk come back` while the desk is tidied; "" of other words."""
-    found = _AFTER_DOING.match(words)
+    found = AFTER_DOING.match(words)
     if found is None:
         return ""
     said, rest = set(doing.split()) - _SMALL, found["rest"].split()

@@ -15,6 +15,12 @@ ABILITIES = (
     " things on. Say stop at any time."
 )
 
+LIMITS = (
+    "With my one hand I lift up to about two kilograms and take hold of what is at most seven centimetres wide. I reach"
+    " from the floor to about a metre, drive half a metre a second, and cannot climb stairs."
+)
+"""As in the data sheets of the arm and the gripper, and as the base drives."""
+
 _STEPS = {
     "plan:": "working out how", "look for": "looking for the {}", "look around": "looking around",
     "look closer at": "looking at the {} from nearer", "search:": "looking around", "approach": "on my way to the {}",
@@ -102,6 +108,10 @@ def abilities(builder: PlanBuilder, slots: Slots) -> None:
 
 def capacity(builder: PlanBuilder, slots: Slots) -> None:
     builder.say("No, I can carry one thing at a time. Of several I bring one after the other.")
+
+
+def limits(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say(LIMITS)
 
 
 def hearing(builder: PlanBuilder, slots: Slots) -> None:

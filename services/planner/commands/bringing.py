@@ -67,7 +67,11 @@ def _brought(builder: PlanBuilder, item: BelievedObject) -> bool:
 
 
 def deliver(builder: PlanBuilder, slots: Slots) -> None:
-    """Take things to a place, a room, a surface or the person."""
+    """Take things to a place, a room, a surface or the person, or to where another thing stands."""
+    by = read(slots["spot"], builder.vocabulary) if slots["thing"][0] in DETERMINERS else ""
+    if isinstance(by, Phrase) and not by.sense.new and not builder.vocabulary.spot(slots["spot"]):
+        put_near(builder, slots)
+        return
     _deliver(builder, referents(builder, slots["thing"], prefer_held=True), spot(builder, slots["spot"]))
 
 

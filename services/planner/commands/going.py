@@ -40,6 +40,11 @@ def go(builder: PlanBuilder, slots: Slots) -> None:
     builder.go(place)
 
 
+def go_there(builder: PlanBuilder, slots: Slots) -> None:
+    """To the place that was spoken of."""
+    go(builder, {"spot": ("there",)})
+
+
 def come_back(builder: PlanBuilder, slots: Slots) -> None:
     """Home, unless the plan has just handed something over there."""
     if [step.action for step in builder.steps[-2:]] == ["return", "release"]:

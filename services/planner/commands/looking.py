@@ -83,7 +83,7 @@ def go_and_see(builder: PlanBuilder, slots: Slots) -> None:
         if not place.room:
             seen(builder, slots)
             return
-        _, there, _ = things_at(builder, slots["spot"])
+        builder.spot, there, _ = things_at(builder, slots["spot"])
         builder.say(told(there, place))
         return
     contents(builder, slots)

@@ -39,7 +39,11 @@ def unaccounted(clauses: Sequence[str], steps: Sequence[PlanStep], world: World,
         return []
     trace = _Trace(steps, world, vocabulary)
     alone = len(clauses) == 1
-    meant = [clause for clause in clauses if not is_question(clause) and (alone or not _TELLS_WHY.match(clause))]
+    meant = [
+        clause
+        for clause in clauses
+        if not is_question(clause) and not clause.startswith("say ") and (alone or not _TELLS_WHY.match(clause))
+    ]
     asked = [_asked(clause, trace.certain).split() for clause in meant]
     definite = [tuple(words) for words in asked if words and words[0] not in CONDITIONS and "or" not in words]
     return [word for words in definite for word in trace.missing(words)]
@@ -81,7 +85,10 @@ class _Trace:
         at = 1 if words[0] in COMMANDING else 0
         while at < len(words):
             end = next((e for e in range(min(len(words), at + MOST_WORDS), at, -1) if self._is_place(words[at:e])), 0)
-            if not end:
+            if not end and (whole := self._long_noun(words, at)):
+                found += [] if self._has(" ".join(words[at:whole])) else [" ".join(words[at:whole])]
+                end = whole
+            elif not end:
                 modal = words[at] == "can" and not self._may_be_noun(words, at)
                 found += [] if modal or self._has(words[at]) else [words[at]]
             elif not self._has_place(words[at:end]):
@@ -98,6 +105,11 @@ class _Trace:
         name, ends = words[at + 2 : at + 3], range(at + 3, at + 3 + MOST_WORDS)
         is_known = not name or self._vocabulary.noun(name[0]) or any(self._is_place(words[at + 2 : e]) for e in ends)
         return None if is_known or not self._vocabulary.unlisted(name) else name[0]
+
+    def _long_noun(self, words: Words, at: int) -> int:
+        """Where a known name of several words that begins there ends, as `something to drink from`; 0 for none."""
+        ends = range(min(len(words), at + MOST_WORDS + 1), at + 1, -1)
+        return next((end for end in ends if self._vocabulary.noun(" ".join(words[at:end]))), 0)
 
     def _may_be_noun(self, words: Words, at: int) -> bool:
         before = words[at - 1] if at else ""

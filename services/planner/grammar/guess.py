@@ -137,6 +137,9 @@ def contradicted(words: Words, steps: Sequence[PlanStep], likely: Guess, known: 
     done, others = _acts(steps), _acts(likely.steps)
     if likely.answers or not done or done == others or set(others) >= set(done):
         return False
+    over = ("return", "", "", "", 0.0)
+    if not {"me", "us"}.isdisjoint(words) and over in done and over not in others and len(others) > 1:
+        return False  # the guess leaves aside for whom it is
     unlisted, guessed = _unlisted(steps, known), _unlisted(likely.steps, known)
     new = {word for label in unlisted for word in label.split()}.intersection(words)
     part = any(f" {name} " in f" {label} " for label in unlisted for name in known)  # "wee yellow block"

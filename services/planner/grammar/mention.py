@@ -11,7 +11,7 @@ from services.planner.reference.pronouns import speak_of
 from services.planner.reference.resolve import referents
 
 _PLACED = re.compile(
-    r"\b((?:the|my|a|an|our|some|his|her) (?:\w+ ){1,3}?)(?:(?:that|which) (?!(?:is|was)\b).+? )?"
+    r"\b((?:the|my|a|an|our|some|his|her) (?:\w+ ){1,3}?)(?:somewhere )?(?:(?:that|which) (?!(?:is|was)\b).+? )?"
     r"(?:(?:is|are|was|were|lies|stands|(?:should|must|might|may|could|will)(?: still)? be)"
     r"(?: still| lying| standing| probably| likely| supposed to be| usually| normally)* )?"
     r"(?:on|in|at) (.+)$"
@@ -46,6 +46,7 @@ def expected(words: Words, following: Sequence[str]) -> bool:
 
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
+    words = words[len(words) - words[::-1].index("but") :] if "but" in words[:-1] else words
     for at in (
         0,
         *(i + 1 for i, w in enumerate(words) if w in ("see", "know", "have", "need", "want", "is", "remember")),

@@ -12,7 +12,7 @@ from common.language.politeness import without_politeness
 from common.messages import History
 
 _NO = re.compile(
-    r"^(?:(?:no|nope|wrong(?: one| \w+)?|that is (?:the )?wrong(?: one| \w+)?|not (?:this|that)(?: one| \w+)?|"
+    r"^(?:(?:no|nope|wrong(?: one| \w+)?|(?:that|it) is (?:the )?wrong(?: one| \w+)?|not (?:this|that)(?: one| \w+)?|"
     r"thanks|thank you|but|sorry|well|oh|ah|hm+|um+) )*"
     r"(?:not (?:on|in|to|into) (?:the|my) \w+ )?(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| "
     r"them)? (?P<rest>.+)$"
@@ -22,6 +22,8 @@ _NO = re.compile(
     r"|^(?:(?:never mind|no|well|ok|okay|then) )*(?P<better>(?:on|in|the) .+?) (?:would (?:be|have "
     r"been) (?:better|nicer|best|preferable)|will do)$"
 )
+_WRONG = re.compile(r"^(?:that is |it is )?(?:the )?wrong(?: \w+){0,2}$")
+"""A clause of its own before what was meant."""
 _NO_BARE = re.compile(
     r"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?:the |my )?(?P<place>\w+(?: \w+){0,2}?)(?: please)?$"
 )
@@ -32,6 +34,9 @@ _ELSEWHERE = re.compile(
     r"(?: (?:in|on|at|inside))? (?:the|my|our) (?P<place>\w+(?: \w+){0,2})$"
 )
 """Where else something may be that was not found."""
+_LOOK_THERE = re.compile(
+    r"^(?:so |then )?(?:go (?:and )?)?(?:look|search|check|try|have a look)(?: over)? there(?: first| too)?$"
+)
 _BEING_THERE = re.compile(
     r"^(?:(?:right|ok|okay|good|well) )*(?:now|while|since|as|because)(?: that)? you are (?:already |still )?there "
     r"(?:and |so |please )*(?P<rest>.+)$"
@@ -57,11 +62,12 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     """The command that is meant, by the last one where it refers to that; else the command as it is."""
     last = told.last.command if told.last is not None else ""
     outcome = told.last.outcome if told.last is not None else ""
-    if outcome == "failed" and clauses and (place := _elsewhere(clauses[-1], is_place)):
+    named = clauses[:-1] if clauses[1:] and _LOOK_THERE.match(clauses[-1]) else clauses
+    if outcome == "failed" and named and (place := _elsewhere(named[-1], is_place)):
         return _from(normalise(last).split(), place)
     if last and (there := _BEING_THERE.match(expand(normalise(command)))):
         return _from_there(without_politeness(there["rest"]), last, is_place) or command
-    if not last or len(clauses) != 1:
+    if not last or len(clauses[1:] if clauses and _WRONG.match(clauses[0]) else clauses) > 1:
         return command
     for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
         if wording.action == "again":

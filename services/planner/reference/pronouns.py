@@ -52,5 +52,6 @@ def handled_before(builder: PlanBuilder) -> list[BelievedObject]:
 
 
 def mentioned(builder: PlanBuilder) -> list[BelievedObject]:
-    """What `one` and `other` refer to: the things of this command, else those of the last."""
-    return builder.last or handled_before(builder)
+    """What `one` and `other` refer to: the things of this command, else those of the last, else the one in the hand."""
+    held = builder.world.held
+    return builder.last or handled_before(builder) or ([held] if held else [])

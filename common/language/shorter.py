@@ -1,0 +1,134 @@
+"""Several words for which there are fewer: `plus the can` as `and the can`, `anything at all` as `anything`. Pure."""
+
+import re
+
+from common.language.lexicon import A_VERB
+
+_NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
+_PREPOSITION = (
+    r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
+    r"(?:left|right))\b)"
+)
+_CARDINALS = tuple(enumerate(("one", "two", "three", "four", "five", "six"), 1))
+SHORTER = tuple(
+    (re.compile(words), plain)
+    for words, plain in (
+        (rf"\b(?:plus|as well as|along with|and also|and additionally|not to mention)\b {_NOUN}", "and "),
+        (r"\b(what|which) (?:kinds?|sorts?|types?) of\b", r"\1"),
+        (r"\b(anything|something|nothing) at all\b", r"\1"),
+        *((rf"(?<![\w:.] )(?<![:.])\b{n} (?=[a-z])|(?<=[a-z] ){n} (?=[a-z])", f"{word} ") for n, word in _CARDINALS),
+        (r"\b(?:a few|several) (?!times\b|\w+ ago\b)(?=[a-z]+s\b)(?!seconds\b|minutes\b|hours\b|moments\b)", "some "),
+        (r"(?<=\w),(?= from (?:now|today) on\b)", ""),
+        (r"\b(?:just|right) now\b", "now"),
+        (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside)\b)", "what is "),
+        (r"\b(how many \w+) (?:stand|lie|sit) (?=(?:on|in|at)\b)", r"\1 are "),
+        (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
+        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright "
+         rf")over) {_PREPOSITION}",
+         ""),
+        (r"\b(this|that|these|those) (?:(?:right |over )?here|(?:right|over) there)(?= "
+         r"(?:is|are|should|must|will|goes?)\b)", r"\1"),
+        (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
+        (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
+         r"devil|exactly|actually)\b", r"\1"),
+        (r"\b(put|place|set|take|bring|carry|move|leave|drop) both (?=(?:to|on|in|into|onto)\b)", r"\1 them "),
+        (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)|\bfor the life of (?:me|us)\b", ""),
+        (r"\bto wherever (?=.+ (?:is|are|stands)$)", "to where "),
+        (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
+        (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
+        (r"\b(the \w+) ones? of the (\w+?)s\b", r"\1 \2"),
+        (r"\b(?:of|in) (?:the )?colou?r (?:of )?(\w+)", r"that is \1"),
+        (r"\b(?:of|in) (?!the\b|that\b|this\b|what\b|which\b|any\b|same\b|a\b)(\w+) colou?r\b", r"that is \1"),
+        (rf"\b({A_VERB}) (?:please|kindly) (?=(?:the|my|our|a|an|me|us|it|to|in|on|up|that|this)\b)", r"\1 "),
+        (
+            r"^(any\w* (?!idea|chance|clue|sign|way|news)(?:\w.+ )?(?:(?:in|on|at) (?:the|my|our) \w+(?: "
+            r"\w+)?|there|around|about|left))[.?!]?$",
+            r"is there \1"
+        ),
+        (r"^(?:you )?(seen(?= (?:the|my|our|any|that)\b)|got(?= any\b)) ", r"have you \1 "),
+        (r"\bhow come\b", "why"),
+        (r"\b(the|a|my) (?!same\b|other\b|different\b)(\w+) colou?r(?:ed)? (?=\w)", r"\1 \2 "),
+        (
+            r"\b(bring|get|fetch|carry) (it|them|that) (?:in|through|along|over|down|round)"
+            r"(?= to me\b| here\b| from\b| please\b|$|[,;.!?])",
+            r"\1 \2",
+        ),
+        (r"\b(bring|bringing|fetch) ((?:the|my|a) (?:\w+ ){1,3}?)(?:along|through)(?=$|[,;.!?])", r"\1 \2"),
+        (r"\b(?:the|my) (\w+s),? (?:both|all|each) of them,? (?=(?:into|onto|to|on|in)\b)", r"all the \1 "),
+        (r",? no matter which,?(?= |$)", ""),
+        (r"\bgo at (?=(?:the|my)\b)", "go to "),
+        (r"\bhow is about\b", "how about"),
+        (
+            r"\b(?:have|take) (?:a|another) (?:\w+ )?(?:look|squiz|gander|nosey|shufti|hunt|search|peek|scout|rummage)"
+            r"(?: round| around| about)? for\b",
+            "look for",
+        ),
+        (
+            r"\b(?:having|taking) (?:a|another) (?:\w+ )?(?:look|squiz|gander|hunt|search|peek|rummage)"
+            r"(?: round| around| about)? for\b",
+            "looking for",
+        ),
+        (r"\b(get|take|have|has|got|keep) (?:a )?hold of\b", r"\1"),
+        (r"\b(?:find|make) (?:its|their) way (?:back |over |across )*(?=(?:to|into|onto)\b)", "go "),
+        (r"\b(?:take|get|see|shift|haul|drag) yourself (?:(?:off|over|along|down|on) )*(?=(?:in|on)?to\b)", "go "),
+        (r"\b(?:take|get|shift|haul|drag|bring) yourself (?:over )?(?=here|home|back)", "come "),
+        (r"^(back|home|here|over here) you come\b", r"come \1"),
+        (
+            r",? (?:and |so |then |back |straight |off )*(into|in|onto|to) ((?:the|my) \w+(?: \w+)?) with (it|them)\b",
+            r" and put \3 \1 \2",
+        ),
+        (r"\bboth (?=(?:go|belong|need|should|must|have to)\b)", ""),
+        (r",? (?:preferably|ideally|for preference),? (?=(?:the|a|my)\b)", ", "),
+        (r"\b(bring|give|fetch|hand|pass|get|take) to (me|us) (?=(?:the|my|a|an|some|that)\b)", r"\1 \2 "),
+        (r" for to (?:eat|drink|use|read|see) (?:it|them)\b", ""),
+        (r"\b(once|as soon as) ((?:the|my) (?:\w+ )?\w+) (?:is|are) (?=(?:in|on|into|onto)\b)", r"\1 you put \2 "),
+        (r"\b(?:put|move|set|place) (.+?) where (.+?) is,? and \2 where \1 is\b", r"swap \1 and \2"),
+        (rf"\b({A_VERB}) what (?:you are (?:holding|carrying)|is in your hand) (?=in|on|to|back)", r"\1 it "),
+        (r"\bany (?:notion|inkling|clue|hint)\b", "any idea"),
+        (r"\b(?:(?:that|which) (?:is having|has)|with) (?:a |the )?(\w+) colou?r\b", r"that is \1"),
+        (r"\boff you (?:go|pop|trot|toddle|run)(?: then)? (?=to|into)", "go "),
+        (r"\b(some|any)thing (?:that )?(?:i|we|one) (?:can|could|may|might) (eat|drink)\b", r"\1thing to \2"),
+        (r"\b(some|any)thing to (?:munch|nibble|snack|chew)(?: on)?\b", r"\1thing to eat"),
+        (r"\b(?:some|any)thing (?:that )?(?:i can |we can |to )(?:write|draw|note it down|jot it down|"
+        r"scribble) with\b", "a pen"),
+        (r"\b((?:some|any)thing) to drink (?:out of|with)\b", r"\1 to drink from"),
+        (r"\b(some|any)thing to (?:sip|gulp|swig)(?: on)?\b", r"\1thing to drink"),
+        (r"^you (could|would|can) not (?!happen)(.+?),? (?:could|would|can) you\??$", r"\1 you \2"),
+        (r"^you (?:would|do|could) not (?:happen|chance) to (.+?)(?:,? (?:do|would|could) you)?\??$", r"do you \1"),
+        (r",? (?:the one |one )?(?:that|which) (?:is|are) not (?=(?:the )?\w+(?: or \w+)?$)", r" but not "),
+        (
+            r"^what (?:have (?:we|you)(?: got)?|do (?:we|you) have|is there|can i have)(?: there)? to (drink|eat)\b",
+            r"is there anything to \1",
+        ),
+        (
+            r"(?<!\bis)(?<!\bare)(?: anywhere| somewhere)? (?:in|around|inside|within) (?:the|this|our|my|your) "
+            r"(?:(?:whole|entire) )?(?:house|flat|apartment|home|building)\b",
+            "",
+        ),
+        (r"^((?:what|which|who)\b[^,]*), (?=(?:the|my|our|a)\b.* or \w)", r"\1 "),
+        (
+            rf"(?<=\bif )there is nothing (?:left )?(?:on|in|at) ((?:the|my|our) \w+(?: (?!then\b|{A_VERB}\b)\w+)?)",
+            r"\1 is empty",
+        ),
+        (r"\bwhich (?:one )?of (?:the|those|these|my|our) (?:two |three |four )?([a-z]+)s (?=(?:is|stands|lies)\b)",
+         r"which \1 "),
+        (r"\b(?:which|what) (?:one )?is (?:the )?(\w+er)( one)?,? (?=the\b.* or the\b)", r"which is \1 "),
+        (
+            r"^(?:list|name|tell me) (?:all|every|each)(?: of)?(?: the| my| our)? ([a-z]+?)s?(?: (?:that )?you know)?"
+            r"(?:,? (?:with|and) (?:its|their) (?:place|location)s?|,? and where (?:it is|they are))?[.!]?$",
+            r"where are all the \1s",
+        ),
+        (r"\bfrom off(?: of)?\b", "from"),
+        (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
+        (r"\bwith you (?=to|into|on|in|over)", ""),
+        (r",? on (?:the|your) way to (?=the|my|our)", " then go to "),
+        (r"[.;,]? (not (?:the|a|my) \w+ one)[.;,] (?=(?:the|a|my) )", r", \1, "),
+        (r"\b(inside|off|outside) of\b", r"\1"),
+        (r"\bone more(?= please$|$)", "another one"),
+        (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
+        (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),
+        (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
+        (r"\b(left|right)[- ]hand\b", r"\1"),
+    )
+)  # fmt: skip
+"""Several words for which there are fewer, wherever they stand."""

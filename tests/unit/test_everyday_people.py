@@ -1,0 +1,67 @@
+"""Forms of everyday sentences about who is where, what else will do, and what the robot can do."""
+
+import pytest
+
+from evaluation.everyday.notation import verdict
+from evaluation.everyday.sentences import Sentence
+from evaluation.everyday.understanding import understand
+
+
+@pytest.mark.parametrize(
+    ("context", "said", "right"),
+    [
+        # For somebody, who is somewhere.
+        ("-", "Bring my wife the blue mug, she's in the study.", "put(blue mug, desk)"),
+        ("-", "Take the apple to Tom, he's at the desk.", "put(apple, desk)"),
+        ("-", "Anna is sitting at the kitchen table, bring her the red mug.", "put(red mug, kitchen table)"),
+        ("-", "I'm at the desk, bring me the red mug please.", "put(red mug, desk)"),
+        ("-", "Can you bring me the white can? I'm at the desk.", "put(white can, desk)"),
+        ("-", "Meet me in the kitchen.", "goto(kitchen)"),
+        # What somebody is to be asked, or reminded of.
+        ("-", "Ask Peter whether he wants coffee.", "say(Peter do you want coffee)"),
+        ("-", "Ask the children in the bedroom if they are hungry.", "goto(bedroom); say(are you hungry)"),
+        ("-", "Remind me in five minutes to call my mother.", "wait(300); say(call your mother)"),
+        ("-", "Wake me up in ten minutes.", "wait(600); say(wake up)"),
+        ("-", "Repeat after me: I am a robot.", "say(I am a robot)"),
+        # What else will do.
+        ("-", "Bring me a spoon, or if you can't find it, the blue mug.", "fetch(spoon) || fetch(blue mug)"),
+        ("-", "Get the green can. If it isn't there, bring me the red one.", "fetch(green can)"),
+        ("held:white mug", "Not that one, I want the blue mug.", "put(white mug, desk); fetch(blue mug)"),
+        ("held:red mug", "Actually, I want the blue one instead.", "put(red mug, living table); fetch(blue mug)"),
+        ("last:bring me the red mug", "Wrong mug. I meant the white one.", "fetch(white mug)"),
+        # What is told, and what is asked for.
+        ("-", "Get me my vitamins, it's time to take them.", "fetch(orange box)"),
+        ("-", "The red ball doesn't belong on the bookshelf, put it in the toy box.", "put(red ball, toy box)"),
+        ("-", "the telly's on but the remote's nowhere to be seen, hunt it down", "find(remote)"),
+        ("-", "I've left my phone charger somewhere in the bedroom, would you look for it?", "find(phone charger)"),
+        ("-", "Take the apple off the kitchen table and put it on the counter for me.", "put(apple, counter)"),
+        ("failed:find my glasses", "They may be in the bedroom, please look there.", "goto(bedroom); find(glasses)"),
+        # Where, more closely.
+        ("-", "Move the apple to the counter, next to the bowl.", "put(apple, counter near yellow bowl)"),
+        (
+            "-",
+            "Move the green bottle over to the white one on the dresser.",
+            "put(green bottle, dresser near white bottle)",
+        ),
+        ("-", "Bring me what's left of the bowl on the counter.", "fetch(blue bottle)"),
+        ("-", "Put the apple under the table.", "refuse()"),
+        ("-", "Bring the apple to the yellow bowl.", "put(apple, counter near yellow bowl)"),
+        ("-", "Bring me the ladle from the kitchen, the children are waiting for their soup.", "fetch(ladle)"),
+        # Looks, and commands one behind the other.
+        ("-", "Look whether the white box is on the coffee table and tell me.", "answer(yes)"),
+        ("-", "Count to five, say coming, and go to the study", "wait(5); say(coming); goto(study)"),
+        ("held:apple", "Keep it and go to the bedroom.", "goto(bedroom)"),
+        # The robot itself.
+        ("-", "How much can you carry?", "answer(kilo)"),
+        ("-", "How high can you reach?", "answer(metre)"),
+        ("-", "Can you go up the stairs?", "refuse()"),
+        ("last:bring me the orange box", "In which room did you find it?", "answer(desk)"),
+        ("-", "Something to drink out of, please.", "fetch(red mug)"),
+        ("-", "I need something to write with.", "fetch(pen)"),
+        ("which:yellow block|blue block", "I need the bigger block.", "pick(yellow block)"),
+    ],
+)
+def test_the_form_is_understood(context: str, said: str, right: str) -> None:
+    sentence = Sentence(context, said, right)
+    found = understand(sentence)
+    assert verdict(sentence, found) == "right", found
