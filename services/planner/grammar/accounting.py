@@ -108,6 +108,8 @@ class _Trace:
 
     def _long_noun(self, words: Words, at: int) -> int:
         """Where a known name of several words that begins there ends, as `something to drink from`; 0 for none."""
+        if words[at] in self._vocabulary.colours:
+            return 0
         ends = range(min(len(words), at + MOST_WORDS + 1), at + 1, -1)
         return next((end for end in ends if self._vocabulary.noun(" ".join(words[at:end]))), 0)
 

@@ -67,7 +67,7 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         return _from(normalise(last).split(), place)
     if last and (there := _BEING_THERE.match(expand(normalise(command)))):
         return _from_there(without_politeness(there["rest"]), last, is_place) or command
-    if not last or len(clauses[1:] if clauses and _WRONG.match(clauses[0]) else clauses) > 1:
+    if not last or len(clauses[1:] if clauses and _WRONG.match(clauses[0]) else clauses) != 1:
         return command
     for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
         if wording.action == "again":
