@@ -147,7 +147,7 @@ def with_breaks(text: str) -> str:
             break
         text = f"{text[: at[0]].rstrip(' ,')} . {text[at[1] :]}"
     first, but, second = text.partition(" but ")
-    apart = but and first.split()[0] in DETERMINERS and is_statement(first, ended=True)
+    apart = but and not DETERMINERS.isdisjoint(first.split()[:1]) and is_statement(first)
     return f"{first.rstrip(' ,')} . {second}" if apart and is_statement(second) else text
 
 
