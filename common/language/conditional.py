@@ -120,8 +120,8 @@ def conditional(text: str) -> str:
         return f"if you find {thing[0]} . {found['command']} . otherwise {found['other']}"
     elif (found := _FAILING.match(bare)) and verb_first(found["command"]):
         thing = _FIRST_THING.search(found["command"])
-        bare = without_politeness(found["other"])
-        other = bare if verb_first(bare) else replaced(found["command"], bare)
+        asked = without_politeness(found["other"])
+        other = asked if verb_first(asked) else replaced(found["command"], asked)
         if thing and other:
             return f"if you find {thing[0]} . {found['command']} . otherwise {other}"
     elif (found := _AT_END.match(bare)) and bare.split()[0] in REQUESTS and not _ASKS.search(found["command"]):

@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import filled, noun_phrases, verb_first, with_thing
+from common.language.exchange import filled, first_match, noun_phrases, verb_first, with_thing
 from common.language.lexicon import A_VERB, COMMANDING
 from common.language.normalise import DETERMINERS, infinitive
 from common.language.politeness import without_politeness
@@ -61,7 +61,7 @@ def contrasted(text: str) -> str:
     if found := _ELSEWHERE.match(text):
         return f"{found['thing']} {found['right']}"
     text = _NOT_HERE.sub("", text)
-    found = next(filter(None, (pattern.match(text) for pattern in _CONTRASTS)), None)
+    found = first_match(_CONTRASTS, text)
     return text if found is None else _right(found["wrong"], found["right"])
 
 

@@ -1,7 +1,7 @@
 """One part of a sentence in the place of another: things, places, what "one" and "it" stand for. Pure."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from common.kinds import KINDS
 from common.language.lexicon import COMMANDING
@@ -18,6 +18,11 @@ PREPOSITIONS = frozenset({
 """Words that end a noun phrase."""
 IsPlace = Callable[[Words], bool]
 """Do the words name a place?"""
+
+
+def first_match(patterns: Iterable[re.Pattern[str]], text: str) -> re.Match[str] | None:
+    """What the first of the patterns finds that fits a text from its beginning on."""
+    return next(filter(None, (pattern.match(text) for pattern in patterns)), None)
 
 
 def verb_first(text: str) -> bool:

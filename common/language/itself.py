@@ -46,11 +46,10 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("capacity", "can could do able + you + carry hold lift take bring fetch manage + two three several many more once "
                  "both"),
     ("limits", "how + much heavy high far low fast quick quickly big wide strong tall large + can could do are does "
-               "is + you your + carry lift reach hold bring drive go move grab grip strong fast tall big "
-               "heavy hand arm"),
-    ("limits", "what how which + heaviest biggest highest fastest widest largest limit limits limitations "
-    "speed payload "
-               "strength weight weigh height reach + you your"),
+               "is + you your + carry lift reach hold bring drive go move grab grip strong fast tall big heavy hand "
+               "arm"),
+    ("limits", "what how which + heaviest biggest highest fastest widest largest limit limits limitations speed "
+               "payload strength weight weigh height reach + you your"),
     ("limits", "can could able do + you + stairs steps upstairs downstairs climb"),
     ("doing", "are is + you everything + alright ok okay right well fine"),
     ("doing", "where + you + going headed off heading"),

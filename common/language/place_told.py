@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import PREPOSITIONS, verb_first
+from common.language.exchange import PREPOSITIONS, first_match, verb_first
 from common.language.politeness import without_politeness
 
 _IT_IS = (
@@ -41,22 +41,17 @@ _TO_BE_GOT = re.compile(
 _WHERE_TO = r"(?P<where>(?:on|in|at|by|near) (?:the|my|our|his|her|their) [^,]+?)"
 _PERSON = r"(?P<whom>(?:my|our|the) \w+|(?!(?:me|us|it|them|to|the|my|our|a|an|that)\b)\w+)"
 _IS_THERE = r"(?: (?:sitting|standing|lying|waiting|working|busy|resting|over|still|upstairs|downstairs))*"
-_FOR_SOMEBODY = (
-    re.compile(
-        rf"^(?:bring|take|give|get|fetch|hand|pass|carry) {_PERSON} (?P<thing>(?:the|a|an|my|that|some|his|"
-        rf"her) [^,]+?), "
-        rf"(?:and )?(?:he|she|they) (?:is|are){_IS_THERE} {_WHERE_TO}$"
-    ),
-    re.compile(
-        rf"^(?:bring|take|give|get|fetch|hand|pass|carry) (?P<thing>(?:the|a|an|my|that|some|his|her) [^,]+?) "
-        rf"(?:over )?(?:to|for) {_PERSON}, (?:and )?(?:he|she|they) (?:is|are){_IS_THERE} {_WHERE_TO}$"
-    ),
-    re.compile(
-        rf"^{_PERSON} (?:is|are){_IS_THERE} {_WHERE_TO}, (?:so |and )?(?:please )?"
-        r"(?:bring|take|give|get|fetch|hand|pass|carry) (?:(?:him|her|them) (?P<thing>(?:the|a|an|my|that|"
-        r"some|his) [^,]+?)"
-        r"|(?P<one>(?:the|a|an|my|that|some|his|her) [^,]+?) (?:over )?(?:to|for) (?:him|her|them))$"
-    ),
+_BRING = "(?:bring|take|give|get|fetch|hand|pass|carry)"
+_THING = r"(?:the|a|an|my|that|some|his|her) [^,]+?"
+_FOR_SOMEBODY = tuple(
+    re.compile(form)
+    for form in (
+        rf"^{_BRING} {_PERSON} (?P<thing>{_THING}), (?:and )?(?:he|she|they) (?:is|are){_IS_THERE} {_WHERE_TO}$",
+        rf"^{_BRING} (?P<thing>{_THING}) (?:over )?(?:to|for) {_PERSON}, (?:and )?(?:he|she|they) (?:is|are)"
+        rf"{_IS_THERE} {_WHERE_TO}$",
+        rf"^{_PERSON} (?:is|are){_IS_THERE} {_WHERE_TO}, (?:so |and )?(?:please )?{_BRING} (?:(?:him|her|them) "
+        rf"(?P<thing>(?!her ){_THING})|(?P<one>{_THING}) (?:over )?(?:to|for) (?:him|her|them))$",
+    )
 )
 """Something for somebody, and where that person is."""
 _SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
@@ -77,7 +72,7 @@ def _with_place(sentence: str) -> str:
     """What is to be brought or put, with where it is said to be; "" where that is not said."""
     told = sentence.rstrip(".?!; ")
     bare, end = without_politeness(told), sentence[len(told) :]
-    if for_somebody := next(filter(None, (pattern.match(bare) for pattern in _FOR_SOMEBODY)), None):
+    if for_somebody := first_match(_FOR_SOMEBODY, bare):
         thing = for_somebody["thing"] or for_somebody["one"]
         return f"take {thing} to {for_somebody['where'].partition(' ')[2]}{end}"
     if (found := _TO_BE_PUT.match(bare)) and " from " not in found["said"]:

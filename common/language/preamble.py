@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.exchange import PREPOSITIONS, IsPlace, named, verb_first
+from common.language.exchange import PREPOSITIONS, IsPlace, first_match, named, verb_first
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -84,7 +84,7 @@ def with_preamble(text: str, is_place: IsPlace) -> str:
             request = _BACK_THERE.sub(where, asked, count=1) if where else asked
             if (whole := named(request, told["thing"])) != request:
                 return whole
-    if asker := next(filter(None, (pattern.match(text) for pattern in _ASKER_AT)), None):
+    if asker := first_match(_ASKER_AT, text):
         known = is_place(tuple(w for w in asker["where"].split()[1:] if w not in DETERMINERS))
         if known and PREPOSITIONS.isdisjoint(asker["thing"].split()):
             return f"take {asker['thing']} to {asker['where'].partition(' ')[2]}"

@@ -57,12 +57,12 @@ REFUSALS: tuple[Wording, ...] = (
     ),
     _acts(
         "fix | repair | mend | charge | break | smash | burn | kill | hurt | hit | kick | paint | draw | cut | play"
-        " | read | sing | dance | push | climb | jump | fly | buy | sell",
+        " | read | sing | dance | push | jump | fly | buy | sell",
         _ALL_I_DO,
     ),
     Wording(
         "refuse",
-        "(sing | dance | jump | fly) [<words>] | (play | climb) <words> | tell (me | us) (a | another) (joke | story)"
+        "(sing | dance | jump | fly) [<words>] | play <words> | tell (me | us) (a | another) (joke | story)"
         " | order (me | us) <words>",
         reason=_ALL_I_DO,
     ),

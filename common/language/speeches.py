@@ -31,8 +31,12 @@ _TO_BE_ASKED = re.compile(
     r"(?P<verb>wants?|needs?|likes?|knows?|ha(?:s|ve)|is|are|would|can|could|will) (?P<what>[^,;.]+)"
 )
 """What somebody is to be asked."""
-_OF_THEM = {"is": "are", "are": "are", "would": "would", "can": "can", "could": "could", "will": "will"}
-"""Verbs that come before the one who is asked."""
+_BEFORE_YOU = frozenset({"is", "are", "would", "can", "could", "will"})
+"""Verbs of a question that come before the one who is asked."""
+_OF_YOU = {"is": "are", "has": "have", "wants": "want", "needs": "need", "likes": "like", "knows": "know"}
+_NAMELESS = re.compile(r"(?:the|my|our|them|him|her|every\w+|people)\b")
+"""How somebody is named without a name to call them by."""
+_REPEATED = re.compile(r"^repeat after me[,:]? (?:and )?")
 _THEIRS = re.compile(r"\b(?:their|his|her)\b")
 LONG_SPEECH = re.compile(
     r"^(?:(?:say|announce)(?: that)?|(?:shout|yell|call)(?: out)? that|tell (?:them|everybody|everyone|people|"
@@ -54,24 +58,18 @@ TO_BE_SAID = re.compile(r"(?:^|(?<=[,.;!?] )|(?<= and )|(?<= then )|(?<=please )
 
 def as_speech(text: str) -> str:
     """Normalised text with what is to be said behind `say` and `tell them`: `shout dinner`, `tell mum to come`."""
-    text = re.sub(r"^repeat after me[,:]? (?:and )?", "say ", text)
-    text = _TO_BE_ASKED.sub(_asked, text)
+    text = _TO_BE_ASKED.sub(_asked, _REPEATED.sub("say ", text))
     text = _LET_KNOW.sub(r"\g<before>tell them\g<where> that ", _TOLD_TO_DO.sub(_told, text))
     return _CEREMONY.sub(r"\g<before>say ", _CRIED.sub(r"\g<before>say ", text))
 
 
 def _asked(found: re.Match[str]) -> str:
     """`ask the boys if they want tea` as what is said to them."""
-    verb = found["verb"]
-    do = {"has": "have"}.get(verb, verb.removesuffix("s"))
-    question = f"{_OF_THEM[verb]} you" if verb in _OF_THEM else f"do you {do}"
-    whom = "" if re.match(r"the|my|our|them|him|her|every|people", found["whom"]) else f"{found['whom']} "
-    spoken = f"{whom}{question} {_THEIRS.sub('your', found['what'], count=1)}"
-    return (
-        f"{found['before']}tell them{found['where']} that {spoken}"
-        if found["where"]
-        else f"{found['before']}say {spoken}"
-    )
+    verb = _OF_YOU.get(found["verb"], found["verb"])
+    question = f"{verb} you" if found["verb"] in _BEFORE_YOU else f"do you {verb}"
+    whom = "" if _NAMELESS.match(found["whom"]) else f"{found['whom']} "
+    say = f"tell them{found['where']} that" if found["where"] else "say"
+    return f"{found['before']}{say} {whom}{question} {_THEIRS.sub('your', found['what'], count=1)}"
 
 
 def _told(found: re.Match[str]) -> str:

@@ -12,10 +12,12 @@ PLAINLY = msgspec.structs.replace(CONFIG, guess=False)
 """Settings of a planner that does not guess, so that no guess is learnt from."""
 HOME = load_household("apartment")
 NOW = 500.0
+"""Time [s] at which a sentence is said, a minute after all was seen (chosen)."""
 MUG, CAN, BLOCK, BOTTLE, BOX = (
     (0.08, 0.08, 0.095), (0.066, 0.066, 0.115), (0.05, 0.05, 0.05), (0.064, 0.064, 0.21), (0.06, 0.08, 0.13),
 )  # fmt: skip
 BALL, APPLE, BOWL = (0.066, 0.066, 0.066), (0.072, 0.072, 0.072), (0.14, 0.14, 0.06)
+"""Extents [m] of the things, those of the shipped apartment."""
 
 
 def _object(

@@ -1,5 +1,6 @@
 """A plan in the making: the steps so far and the world as they will have left it. Pure."""
 
+import math
 from typing import Literal
 
 import msgspec
@@ -197,9 +198,8 @@ class PlanBuilder:
 
     def _set_down(self, held: BelievedObject) -> Receptacle:
         """Where something that is in the way was taken from, else the nearest surface."""
-        (x, y, _), origin = self.world.pose, self.world.history.taken_from.get(held.label)
-        far = {r.name: (r.center[0] - x) ** 2 + (r.center[1] - y) ** 2 for r in self.vocabulary.surfaces()}
-        found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.name != origin, far[r.name]))
+        here, origin = self.world.pose[:2], self.world.history.taken_from.get(held.label)
+        found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.name != origin, math.dist(r.center[:2], here)))
         if not found:
             raise Refusal(f"I am holding the {held.label} and see no place to put it down")
         return self.choices.pick(found)

@@ -67,9 +67,9 @@ def chosen(
         return found
     meant = _SAID_BEFORE.sub("", normalise(answer, ","))
     words = words_of(meant)
-    parts = meant.split(",")
-    wanted = [part for part in parts if "not" not in expand(part).split()]  # "i will not eat it, i will throw it"
-    likely, p = likeliest(",".join(wanted) if len(wanted) < len(parts) and wanted else meant, options, known, household)
+    # What somebody does not want says less than what they do: "i will not eat it, i will throw it".
+    wanted = ",".join(part for part in meant.split(",") if "not" not in expand(part).split())
+    likely, p = likeliest(wanted or meant, options, known, household)
     named = any(not set(option.split()).isdisjoint(words) for option in options)
     least = FIRM if named and not UNFIT.isdisjoint(words) else SURE
     return likely if likely and p >= least else _another(words, options, known)

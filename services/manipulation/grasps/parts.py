@@ -35,9 +35,10 @@ def across_parts(points: Array) -> list[float]:
     while len(told) < MOST and len(left):
         apart = np.abs((left[:, None] - left + math.pi / 2) % math.pi - math.pi / 2)
         most = int((apart < SECTOR / 2).sum(axis=1).argmax())
-        if (apart[most] < SECTOR / 2).sum() < LEAST * SAMPLES:
+        alike = apart[most] < SECTOR / 2
+        if alike.sum() < LEAST * SAMPLES:
             break
-        turns = (left[apart[most] < SECTOR / 2] - left[most] + math.pi / 2) % math.pi - math.pi / 2
+        turns = (left[alike] - left[most] + math.pi / 2) % math.pi - math.pi / 2
         told.append(math.remainder(float(left[most] + turns.mean()), math.pi))
         left = left[apart[most] >= SECTOR]
     return told

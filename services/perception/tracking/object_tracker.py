@@ -44,7 +44,7 @@ class ObjectTracker:
         self._household, self._gone_after, self._min = household, gone_after, min_confidence
         self._tracks: list[Track] = []
         self._lost: deque[Track] = deque(maxlen=LOST)
-        self._fallen: list[Track] = []
+        self._fallen: deque[Track] = deque(maxlen=LOST)
         self._count = 0
 
     def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
@@ -78,7 +78,7 @@ class ObjectTracker:
                 self._tracks.append(track)
                 seen.add(track.id)
             see(track, d, now, should_show(track, view))
-        self._fallen = [t for t in self._fallen if not self._is_found(t, seen)]
+        self._fallen = deque((t for t in self._fallen if not self._is_found(t, seen)), LOST)
         for track in missing:
             track.misses += 1
             if track.seen_at > track.looked_at and self._is_found(track, seen):

@@ -86,8 +86,8 @@ class _Trace:
         while at < len(words):
             end = next((e for e in range(min(len(words), at + MOST_WORDS), at, -1) if self._is_place(words[at:e])), 0)
             if not end and (whole := self._long_noun(words, at)):
-                found += [] if self._has(" ".join(words[at:whole])) else [" ".join(words[at:whole])]
-                end = whole
+                name, end = " ".join(words[at:whole]), whole
+                found += [] if self._has(name) else [name]
             elif not end:
                 modal = words[at] == "can" and not self._may_be_noun(words, at)
                 found += [] if modal or self._has(words[at]) else [words[at]]

@@ -137,8 +137,8 @@ def contradicted(words: Words, steps: Sequence[PlanStep], likely: Guess, known: 
     done, others = _acts(steps), _acts(likely.steps)
     if likely.answers or not done or done == others or set(others) >= set(done):
         return False
-    over = ("return", "", "", "", 0.0)
-    if not {"me", "us"}.isdisjoint(words) and over in done and over not in others and len(others) > 1:
+    left_out = {step.action for step in steps} - {step.action for step in likely.steps}
+    if "return" in left_out and len(others) > 1 and not {"me", "us"}.isdisjoint(words):
         return False  # the guess leaves aside for whom it is
     unlisted, guessed = _unlisted(steps, known), _unlisted(likely.steps, known)
     new = {word for label in unlisted for word in label.split()}.intersection(words)

@@ -46,7 +46,6 @@ def expected(words: Words, following: Sequence[str]) -> bool:
 
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
-    words = words[len(words) - words[::-1].index("but") :] if "but" in words[:-1] else words
     for at in (
         0,
         *(i + 1 for i, w in enumerate(words) if w in ("see", "know", "have", "need", "want", "is", "remember")),

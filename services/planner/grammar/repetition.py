@@ -67,9 +67,10 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         return _from(normalise(last).split(), place)
     if last and (there := _BEING_THERE.match(expand(normalise(command)))):
         return _from_there(without_politeness(there["rest"]), last, is_place) or command
-    if not last or len(clauses[1:] if clauses and _WRONG.match(clauses[0]) else clauses) != 1:
+    asked = clauses[1:] if clauses and _WRONG.match(clauses[0]) else clauses
+    if not last or len(asked) != 1:
         return command
-    for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
+    for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", asked[0]).split()), "command"):
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
     if (bare := _NO_BARE.match(expand(normalise(command)))) and is_place(tuple(bare["place"].split())):
@@ -81,7 +82,7 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         in DETERMINERS | PREPOSITIONS
     ):
         return replaced(normalise(last), rest, is_place) or command
-    if outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):
+    if outcome == "cancelled" and (other := _instead(asked[0], last, is_place)):
         return other
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
