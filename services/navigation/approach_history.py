@@ -1,4 +1,4 @@
-"""Where the base has already stood for an object: sent before the same object again, it stands somewhere else."""
+"""Poses at which the base has already stood before an object, so that a repeated goal leads to another pose."""
 
 import math
 
@@ -12,23 +12,23 @@ REACH = 0.4
 
 
 class ApproachHistory:
-    """Forgotten when the base is sent elsewhere. A goal repeated under its own id is no new wish."""
+    """Poses used for one object, until a goal names another. A goal repeated under its own id changes nothing."""
 
     def __init__(self) -> None:
         self._item, self._poses = "", list[tuple[str, Pose2]]()
 
     def goal_sent(self, item: str) -> None:
-        """A goal before an item, or "" for anything else."""
+        """Note a new goal; `item` is the object that it leads to, "" for other goals."""
         if item != self._item:
             self._item, self._poses = item, []
 
     def arrived(self, goal_id: str, pose: Pose2 | None) -> None:
-        """A goal has been reached."""
+        """Note that a goal was reached, with the base at `pose`."""
         if self._item and pose is not None:
             self._poses.append((goal_id, pose))
 
     def penalised(self, goal_id: str, choices: Choices) -> Choices:
-        """The choices, those near where other goals ended with a penalty."""
+        """The choices with a penalty added to those near poses where earlier goals for the same object ended."""
         tried = [pose for other, pose in self._poses if other != goal_id]
         return [(cost + sum(_repetition(pose, old) for old in tried), pose) for cost, pose in choices]
 

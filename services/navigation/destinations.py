@@ -1,4 +1,4 @@
-"""Where the base may go for a goal: by the household as people call it now, and by what perception has reported."""
+"""Poses for a goal, by the household with its current names, perception's reports and where the base stood before."""
 
 from common import messages as m
 from common import topics
@@ -16,7 +16,7 @@ from services.navigation.search.search import Search
 
 
 class Destinations:
-    """`goals` is what words and poses mean in the household, `coverage` what searches have looked at."""
+    """Finds the poses of each goal; `goals` translates goals to poses, `coverage` is what searches have looked at."""
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
@@ -28,7 +28,7 @@ class Destinations:
 
     @property
     def watched(self) -> bool:
-        """Perception is there to report objects."""
+        """True while perception runs, or may run: objects in view will be reported."""
         return self._io.peer("perception") is not None
 
     def _learn_names(self) -> None:
@@ -36,30 +36,30 @@ class Destinations:
         self.goals = Goals(self._named, Places(self._named, self._places), self._config)
 
     def goal_sent(self, goal_id: str, item: str) -> None:
-        """Before any other call for a goal; `item`: before which it is, "" for anything else."""
+        """Begin a goal; `item` is the object that it leads to, "" for none. Called before all else for this goal."""
         if self._io.household is not self._named:
             self._learn_names()
         self._goal_id = goal_id
         self._approaches.goal_sent(item)
 
     def arrived(self, pose: Pose2 | None) -> None:
-        """The goal has been reached."""
+        """Note that the goal was reached, with the base at `pose`."""
         self._approaches.arrived(self._goal_id, pose)
 
     def standing_at(self, goal: m.NavGoal) -> Choices:
-        """The pose of a goal and those before its object; raises `Ended` BAD_POSE."""
+        """The poses for a goal of `nav_goal`, those used before penalised; raises `Ended` BAD_POSE."""
         return self._approaches.penalised(self._goal_id, self.goals.pose(goal, self.objects()))
 
     def before(self, item: str) -> Choices:
-        """Before each reported object that the words can mean; empty when none is known."""
+        """Poses before every reported object that `item` can mean, used ones penalised; empty when there is none."""
         return self._approaches.penalised(self._goal_id, self.goals.seen(item, self.objects()))
 
     def known(self, item: str) -> bool:
-        """The words can mean a reported object."""
+        """True when a reported object can be meant by the words `item`."""
         return self.goals.known(item, self.objects())
 
     def search(self, item: str, now: float) -> Search:
-        """A search by where the item and its like were seen and where they belong."""
+        """A new search for an item, which looks first where the item or its like was seen or belongs."""
         self.coverage.viewpoints = viewpoints_of(self._io.household, self._io.latest(topics.ROBOT_DESCRIPTION))
         seen = self._io.latest(topics.SIGHTINGS)
         rows, at = (seen.sightings, seen.t) if seen is not None else ([], 0.0)
@@ -67,6 +67,6 @@ class Destinations:
         return Search(item, self.coverage, self._config, now, likely)
 
     def objects(self) -> list[m.WorldObject]:
-        """What perception has reported last."""
+        """The objects of perception's newest report."""
         reported = self._io.latest(topics.WORLD_OBJECTS)
         return reported.objects if reported else []

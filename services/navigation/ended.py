@@ -1,4 +1,4 @@
-"""How a goal ends."""
+"""The exception that ends a goal, with the status, code and detail that are published."""
 
 from common import messages as m
 

@@ -30,13 +30,13 @@ LAST_RESORT = 100.0
 
 
 class Goals:
-    """Every method raises `Ended` when the goal cannot be meant."""
+    """Translates goals, words or poses, to the poses at which the base may stand; raises `Ended` if it cannot."""
 
     def __init__(self, household: Household, places: Places, config: NavigationConfig) -> None:
         self._household, self._places, self._config = household, places, config
 
     def told(self, text: str) -> Choices:
-        """Where words that search nothing send the base; raises `Ended` UNKNOWN_GOAL or UNKNOWN_PLACE."""
+        """The poses for a goal in words other than `find`; raises `Ended` UNKNOWN_GOAL or UNKNOWN_PLACE."""
         verb, _, place = text.partition(" ")
         if text == "return_to_start":
             return self._home()
@@ -48,7 +48,7 @@ class Goals:
         return [(0.0, self._places.home)]
 
     def place(self, name: str) -> Choices:
-        """Raises `Ended` UNKNOWN_PLACE."""
+        """The poses at a room, surface or place called `name`; raises `Ended` UNKNOWN_PLACE."""
         place = self._places.place(name)
         if place is None:
             raise Ended("failed", "UNKNOWN_PLACE", f"no place {name!r}; known: {self._places.similar(name)}")
@@ -61,7 +61,7 @@ class Goals:
         return self._before((place.center[0], place.center[1]), place)
 
     def pose(self, goal: m.NavGoal, objects: list[m.WorldObject]) -> Choices:
-        """The pose itself; with an object those before it and, when none of them can be reached, the pose.
+        """The pose of a goal; if it names an object, poses before that, and the given one as the last resort.
 
         Raises `Ended` BAD_POSE.
         """
@@ -77,7 +77,7 @@ class Goals:
         return [*before, (LAST_RESORT if before else 0.0, given)]
 
     def _described(self, ref: m.ObjectRef, objects: list[m.WorldObject]) -> Choices:
-        """Before the object of a goal, where it was reported last if that is near where the goal says."""
+        """Poses before the object of a goal: where it was reported last if that is near the goal's own position."""
         x, y, _ = ref.position
         if ref.frame != "map" or not (math.isfinite(x) and math.isfinite(y)):
             return []
@@ -87,7 +87,7 @@ class Goals:
         return self._before((x, y), support_at(self._household, x, y))
 
     def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
-        """Before each object that the words can mean; empty when none is known."""
+        """Poses before every reported object that the words `item` can mean; empty when there is none."""
         return [
             choice
             for o in self._places.matching(item, objects)
@@ -95,15 +95,15 @@ class Goals:
         ]
 
     def known(self, item: str, objects: list[m.WorldObject]) -> bool:
-        """The words can mean one of the objects."""
+        """True when one of the reported objects can be meant by the words `item`."""
         return bool(self._places.matching(item, objects))
 
     def spot(self, item: str) -> Choices:
-        """Where an item is looked for without eyes."""
+        """The pose at which an item is expected while perception does not run."""
         return [(0.0, self._places.spot(item) or self._config.find_spot)]
 
     def _before(self, point: tuple[float, float], receptacle: Receptacle | None) -> Choices:
-        """Before the sides that the household lists, and as a last resort before the others, where no wall is between:
+        """Poses before the sides that the household lists, and with a penalty before the others that no wall is beside:
         a chair may stand before the only side that is listed."""
         stand_off, edge_distance = self._config.stand_off, self._config.edge_distance
         listed = poses_for(point, receptacle, stand_off, edge_distance)
@@ -122,7 +122,7 @@ class Goals:
 
 
 def _within(room: Room) -> Choices:
-    """All over a room, best in its middle, where perhaps a table stands."""
+    """Spots all over a room, the penalty growing from its middle, where perhaps a table stands."""
     outline = room.outline
     counts = [max(0, math.floor((side / 2 - INSIDE) / SPACING)) for side in (outline.length, outline.width)]
     shifts = [

@@ -1,4 +1,4 @@
-"""What makes the costmap more than the plan and the lidar: lasting changes, low things, and what the base ran into."""
+"""Keeps the costmap up to date beyond the lidar: lasting changes, low things, and what the base ran into."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from services.navigation.planning.low_things import LowThings
 
 
 class MapUpkeep:
-    """Owns the costmap `map` and the `contacts` in it; once a second it is brought up to date, kept and shown."""
+    """Owns the costmap `map` and the `contacts` in it; once a second updates, saves and publishes it."""
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._io = io
@@ -30,11 +30,11 @@ class MapUpkeep:
         self._second = -1
 
     def see(self, unmapped: Array, now: float) -> None:
-        """Points (n, 2) [map] of a scan that the map does not explain."""
+        """Take the points (n, 2) [map] of a scan that the map does not explain."""
         self._low.see(unmapped, now)
 
     def step(self, objects: Sequence[m.WorldObject], now: float) -> None:
-        """`objects`: what perception has reported last."""
+        """Update the costmap once a second; `objects` are those of perception's newest report."""
         if int(now) == self._second:
             return
         self._second = int(now)

@@ -1,4 +1,4 @@
-"""Whether a goal may drive: the sensors speak, and the robot knows where it is, or finds out."""
+"""Preconditions of driving: the sensors report, and the robot knows where it is or finds out."""
 
 from common import messages as m
 from common import topics
@@ -11,7 +11,7 @@ from services.navigation.planning.costmap import Costmap
 
 
 class Orientation:
-    """Steps while there is a goal; a lost robot looks about and drives to where it can tell places apart."""
+    """Checks sensors and localisation while there is a goal; drives a lost robot to where it can localise."""
 
     def __init__(self, config: NavigationConfig, io: Io, state: StateEstimator, costmap: Costmap) -> None:
         self._config, self._io, self._state, self._map = config, io, state, costmap
@@ -19,13 +19,13 @@ class Orientation:
 
     @property
     def doing(self) -> str:
-        """LOST or MAP_MISMATCH while the goal waits for a robot that is lost, else ""."""
+        """LOST or MAP_MISMATCH while the robot finds out where it is, else ""."""
         if self._reorientation is None:
             return ""
         return "LOST" if self._state.everywhere.map_fits else "MAP_MISMATCH"
 
     def check(self, now: float) -> None:
-        """Raises `Ended` NO_ODOMETRY or NO_SCAN when a sensor that spoke is silent."""
+        """Check the sensors; raises `Ended` NO_ODOMETRY or NO_SCAN when one that has reported before is silent."""
         state = self._state
         age = state.silence(now)
         if state.pose is not None and age > self._config.odometry_timeout:
@@ -34,7 +34,7 @@ class Orientation:
             raise Ended("failed", "NO_SCAN", "the lidar fell silent")
 
     def find(self, reached: list[m.GoalReached], now: float) -> None:
-        """One step of a lost robot. Raises `Ended` when it has looked for too long."""
+        """Publish the next target or standstill of a lost robot; raises `Ended` when this has lasted too long."""
         if self._reorientation is None:
             self._reorientation = Reorientation(self._config, self._io, self._state, self._map, now)
         target = self._reorientation.step(reached, now)
@@ -43,7 +43,7 @@ class Orientation:
         else:
             self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
 
-    def known(self) -> bool:
-        """The robot knows where it is, or nobody wants it to drive; True when it was looking until now."""
+    def end(self) -> bool:
+        """End the reorientation: the robot knows where it is, or has no goal any more; True when one was under way."""
         was, self._reorientation = self._reorientation, None
         return was is not None

@@ -17,14 +17,14 @@ class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlacesFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """config/places.toml."""
+    """Contents of config/places.toml: `places` are named poses, `items` where single items are looked for."""
 
     places: dict[str, Spot] = {}
     items: dict[str, Spot] = {}
 
 
 class Places:
-    """Looks names up; what it returns is a pose, a receptacle or an object to stand at, or a room without a pose."""
+    """Looks names of places and objects up in the household, places.toml and perception's reports."""
 
     def __init__(self, household: Household, file: PlacesFile) -> None:
         self._household = household
@@ -42,21 +42,21 @@ class Places:
         return self._household.home.x, self._household.home.y, self._household.home.theta
 
     def place(self, name: str) -> Pose2 | Room | Receptacle | None:
-        """A named place."""
+        """The pose, room or receptacle of that name, None if there is none."""
         wanted = normalise(name)
         return self._poses.get(wanted) or self._rooms.get(wanted) or self._receptacles.get(wanted)
 
     def similar(self, name: str) -> str:
-        """For error messages: names that look like it, else all."""
+        """Names of places that are spelled like `name`, else all names, for error messages."""
         names = [*self._poses, *self._rooms, *self._receptacles]
         return ", ".join(near_names(name, names) or sorted(set(names)))
 
     def matching(self, name: str, objects: list[WorldObject]) -> list[WorldObject]:
-        """The known objects that the name can mean and that nobody holds."""
+        """The reported objects that the name can mean, without those in somebody's hand."""
         return [o for o in match_object(name, objects, self._household) if not o.held]
 
     def spot(self, name: str) -> Pose2 | None:
-        """The spot of places.toml for an item."""
+        """The pose that places.toml gives for an item, None where it has none."""
         spot = self._items.get(normalise(name))
         if spot is None:
             spec = self._household.thing(normalise(name))

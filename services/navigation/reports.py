@@ -1,4 +1,4 @@
-"""What navigation tells of the goal under way: its status, and feedback while it lasts."""
+"""Publishes the status of the newest goal, and feedback while it is under way."""
 
 import math
 
@@ -13,7 +13,7 @@ FEEDBACK_PERIOD = 1.0
 
 
 class Reports:
-    """`status` is of the newest goal. Answers to a goal of `nav_goal` are feedback alone."""
+    """Publishes `status` of the newest goal, and feedback; goals that came on `nav_goal` get feedback alone."""
 
     def __init__(self, io: Io, state: StateEstimator) -> None:
         self._io, self._state = io, state
@@ -24,33 +24,33 @@ class Reports:
         io.publish(topics.NAVIGATION_STATUS, self.status)
 
     def begin(self, goal: m.NavigationGoal | m.NavGoal) -> None:
-        """A goal has arrived."""
+        """Begin to report on a goal that has just arrived."""
         self._in_words, self._recoveries = isinstance(goal, m.NavigationGoal), 0
         self.status = m.NavigationStatus(status="navigating", goal_id=goal.id, attempt=goal.attempt)
 
     def begin_leg(self) -> None:
-        """Another navigator works for the goal."""
+        """Begin to report on another navigator that works for the same goal."""
         self._shown, self._feedback_at = (0, ""), -math.inf
 
     def end_leg(self, navigator: Navigator | None) -> None:
-        """A navigator has done its part: its recoveries stay those of the goal."""
+        """Add a navigator's recoveries to those of the goal: its part is done."""
         self._recoveries += navigator.recoveries if navigator else 0
 
     def tell(self, status: m.NavStatus, code: str, detail: str, navigator: Navigator | None) -> None:
-        """Publish another status of the goal."""
+        """Publish a new status of the newest goal."""
         self.status = m.NavigationStatus(
             status=status, goal_id=self.status.goal_id, attempt=self.status.attempt, code=code, detail=detail
         )
         self.publish(self.status, navigator)
 
     def publish(self, status: m.NavigationStatus, navigator: Navigator | None) -> None:
-        """Publish a status as it is."""
+        """Publish a status, with feedback."""
         if self._in_words:
             self._io.publish(topics.NAVIGATION_STATUS, status)
         self.feedback(navigator)
 
     def under_way(self, navigator: Navigator, path: bool, now: float) -> None:
-        """Feedback when something has changed, and now and then."""
+        """Publish feedback when something has changed, and every FEEDBACK_PERIOD."""
         shown = (navigator.recoveries, navigator.doing)
         if shown != self._shown:
             self._shown = shown
@@ -63,7 +63,7 @@ class Reports:
             self.feedback(navigator)
 
     def feedback(self, navigator: Navigator | None, doing: str = "") -> None:
-        """Publish how the goal stands; `doing`: what holds it up, the navigator's word where it is ""."""
+        """Publish feedback; `doing`: what holds the goal up, taken from the navigator where it is ""."""
         status = self.status
         feedback = m.NavigationFeedback(
             goal_id=status.goal_id,

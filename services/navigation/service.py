@@ -179,7 +179,7 @@ class NavigationService:
         doing = self._orientation.doing
         if self._state.lost:
             self._orientation.find(reached, now)
-        elif self._orientation.known():
+        elif self._orientation.end():
             self._contacts.forget()
             if self._navigator is not None:
                 self._navigator.relocated(now)
@@ -232,7 +232,7 @@ class NavigationService:
         navigator, self._search, self._found = self._navigator, None, None
         self._reports.end_leg(navigator)
         self._navigator = None
-        self._orientation.known()
+        self._orientation.end()
         if ended.status == "arrived":
             self._destinations.arrived(self._state.pose)
         if ended.status == "failed" and navigator is not None and self._state.pose is not None:
@@ -246,5 +246,5 @@ class NavigationService:
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""
         self._navigator = self._search = self._found = None
-        self._orientation.known()
+        self._orientation.end()
         self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))

@@ -43,7 +43,7 @@ AGAIN, MAX_AGAIN = 2.0, 16.0
 
 
 class GlobalLocaliser:
-    """`lost`: where the robot is, is not known; `broken`: the last scan speaks against where it was.
+    """Tracks hypotheses while the pose is unknown (`lost`); `broken`: the last scan contradicts the pose of before.
 
     `hypotheses`: where a lost robot may be, the most plausible first.
     """
@@ -69,11 +69,11 @@ class GlobalLocaliser:
 
     @property
     def searching(self) -> bool:
-        """The whole map is being searched at this moment."""
+        """True while the worker searches the whole map."""
         return self._job is not None
 
     def watch(self, localiser: Localiser, points: Array, now: float) -> bool:
-        """Once per scan (n, 2) [base] while the pose is known: is it lost now?"""
+        """Decide whether the pose has been lost; call once per scan (n, 2) [base] while it is known."""
         fit, limit = localiser.fit, BAD_FIT
         broken = self.broken = fit < SUDDEN * self._usual
         if fit > limit and not broken:
@@ -90,7 +90,7 @@ class GlobalLocaliser:
         return self.lost
 
     def step(self, points: Array, odometry: Pose2, elapsed: float, now: float) -> Pose2 | None:
-        """Once per scan (n, 2) [base] while the robot is lost; its pose [map] as soon as that is sure."""
+        """The pose [map] as soon as it is sure, else None; call once per scan (n, 2) [base] while the robot is lost."""
         if self._kept is not None:
             self._kept.predict(odometry, elapsed)
         for one in self.hypotheses:

@@ -46,15 +46,15 @@ class Localiser:
         self.fit = 1.0
 
     def place(self, pose: Pose2, spread: tuple[float, float, float]) -> None:
-        """Start anew from a guess."""
+        """Start anew from a guessed pose [map]."""
         self.pose, self.covariance = pose, np.diag(np.square(spread))
 
     def anchor(self, odometry: Pose2) -> None:
-        """What the wheels count where the pose is now: the next prediction starts from there."""
+        """Set the odometry that belongs to the current pose: the next prediction starts from it."""
         self._odometry = odometry
 
     def predict(self, odometry: Pose2, elapsed: float = 1.0) -> Pose2:
-        """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map.
+        """Predict the pose from odometry; odometry that jumps has restarted and is taken as a new guess in the map.
 
         `elapsed` is what the odometry's own clock says has passed [s].
         """
@@ -79,7 +79,7 @@ class Localiser:
         return self.pose
 
     def follow(self, odometry: Pose2, frame: Pose2) -> Pose2:
-        """Be where somebody else's map has the wheels' frame: `odometry` in it."""
+        """Take the pose from another localisation: `frame` is frame odom in its map, `odometry` the base in odom."""
         self._odometry, self.pose = odometry, compose(frame, odometry)
         return self.pose
 
@@ -118,7 +118,7 @@ class Localiser:
         return r, np.stack([gx, gy, gy * turned[:, 0] - gx * turned[:, 1]])
 
     def to_odometry(self, target: Pose2) -> Pose2:
-        """A pose of the map in the frame that the wheels count in."""
+        """A pose [map] in frame odom."""
         if self._odometry is None:
             return target
         return compose(self._odometry, compose(inverse(self.pose), target))

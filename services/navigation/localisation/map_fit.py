@@ -1,4 +1,4 @@
-"""How well the map still fits the home."""
+"""A measure of how well the map still fits the home."""
 
 import math
 
@@ -18,7 +18,7 @@ class MapFit:
         self._at: Pose2 | None = None
 
     def see(self, pose: Pose2, explained: float) -> None:
-        """A scan from `pose` [map] of which the map explains this share."""
+        """Take a scan from `pose` [map] of which the map explains the given share of points."""
         if self._at is None or math.dist(self._at[:2], pose[:2]) >= EVERY:
             self._at = pose
             self.share += GAIN * (explained - self.share)

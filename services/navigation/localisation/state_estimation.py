@@ -33,7 +33,7 @@ ANYWHERE = (10.0, 10.0, math.pi)
 
 
 class StateEstimator:
-    """`pose` [map] is None before the first odometry, `points` (n, 2) [map] is what the lidar saw last, near the robot.
+    """Estimates `pose` [map], None before the first odometry; `points` (n, 2) [map] is what the lidar saw last near by.
 
     `unmapped` (n, 2) [map] are those of the points that the map does not explain; `odometry` is the pose by the wheels
     alone, `fresh`: a scan arrived in this step."""
@@ -62,7 +62,7 @@ class StateEstimator:
 
     @property
     def lost(self) -> bool:
-        """Where the robot is, is not known: `pose` means nothing, and `points` is in the frame of its wheels."""
+        """True while the robot does not know where it is: `pose` means nothing then, and `points` is in frame odom."""
         return self.everywhere.lost
 
     def step(self, now: float) -> None:
@@ -136,12 +136,12 @@ class StateEstimator:
         self._see(scan, now)
 
     def _forget(self) -> None:
-        """What was seen was seen in another frame."""
+        """Forget what was seen so far: it was entered in another frame."""
         self._map.obstacles.forget()
         self.tracker = ObstacleTracker()
 
     def _see(self, scan: Scan, now: float) -> None:
-        """Place what the lidar sees: in the map, or around a robot that is lost."""
+        """Enter what the lidar sees, in the map or, around a robot that is lost, in frame odom."""
         frame = self.odometry if self.lost or self.pose is None else self.pose
         placed, near = transformed(frame, scan.points), scan.ranges < NEAR
         self.points = placed[near]
@@ -156,7 +156,7 @@ class StateEstimator:
             self.mark(self._map, frame, now)
 
     def mark(self, costmap: Costmap, frame: Pose2, now: float) -> None:
-        """Enter the newest scan in a costmap in whose frame the base is at `frame`."""
+        """Enter the newest scan in a costmap; `frame` is the base's pose in the costmap's frame."""
         if (scan := self.scan) is not None:
             around = self.tracker.people()
             people, moving = ([(o.x, o.y, o.radius + AROUND) for o in around if o.walked is w] for w in (True, False))

@@ -1,4 +1,4 @@
-"""The last stretch that the robot came, for going back a little."""
+"""The last two metres that the base has driven, for going back a little."""
 
 import math
 from collections import deque
@@ -13,7 +13,7 @@ COUNT = 40
 
 
 class Breadcrumbs:
-    """Points [map] where the robot has been."""
+    """Keeps the last points [map] where the base has been."""
 
     def __init__(self) -> None:
         self._points: deque[Point] = deque(maxlen=COUNT)

@@ -1,4 +1,4 @@
-"""What holds the base up and no sensor sees, such as a pane of glass: it is sent on, and stays where it is."""
+"""Detection of obstacles that no sensor sees, such as a pane of glass: the base is sent on and does not move."""
 
 import math
 from collections import deque
@@ -30,7 +30,7 @@ it is gone."""
 
 
 class Contacts:
-    """Places [map] where something unseen is, told to the costmap for as long as they are remembered."""
+    """Places [map] where something unseen has held the base up, kept in the costmap for some time."""
 
     def __init__(self, costmap: Costmap, footprint: float) -> None:
         self._map, self._ahead = costmap, footprint + costmap.resolution / 2
@@ -40,7 +40,7 @@ class Contacts:
         self._trail: deque[tuple[float, Pose2]] = deque()
 
     def check(self, pose: Pose2, target: Pose2, now: float) -> Point | None:
-        """Once a step while the base is sent on to `target` [map], with nothing in the way: what it is held up by."""
+        """The place [map] of what holds the base up, else None; call in each step with a free way to `target` [map]."""
         moved = math.dist(pose[:2], self._from[:2]) > MOVED or abs(wrap(pose[2] - self._from[2])) > TURNED
         way = math.dist(pose[:2], target[:2])
         if way < AWAY or now - self._at > SILENT:
@@ -77,11 +77,11 @@ class Contacts:
         return abs(wrap(theta - turned)) < TURNED and onward > ONWARD * far
 
     def interrupt(self) -> None:
-        """The base is sent somewhere else, or nobody knows whether it moves."""
+        """Start measuring anew: the base is sent elsewhere, or it is not known whether it moves."""
         self._at = -math.inf
 
     def forget(self, now: float = math.inf) -> None:
-        """What was met long before `now`, or everything: the robot was not where it seemed to be."""
+        """Forget places met long before `now`; without it all places, for when the pose estimate has jumped."""
         kept = [(point, at) for point, at in self._met if now - at <= KEPT]
         if len(kept) != len(self._met):
             self._met = kept

@@ -22,7 +22,7 @@ from services.navigation.planning.planner import PathPlanner
 
 
 class Navigator:
-    """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
+    """Drives the base to one of several poses: each step returns the next target pose [map], or raises `Ended`.
 
     `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, ROBOT_IN_WAY,
     DETOUR, BACKING_OFF, HELD_UP or GIVING_WAY. `remaining` is the path that is left [m], `met` what held it up last
@@ -55,12 +55,12 @@ class Navigator:
 
     @property
     def eta(self) -> float:
-        """Seconds that are left, as far as one can tell."""
+        """Estimated time to arrival [s]."""
         waiting = self._config.blocked_wait if self.doing else 0.0
         return self.remaining / self._config.usual_speed + waiting
 
     def take_new_path(self) -> list[Point] | None:
-        """The path being followed, once after it has changed."""
+        """The path being followed, the first time that it is asked for after a change, else None."""
         return self._route.take_new_path()
 
     def step(
@@ -71,7 +71,7 @@ class Navigator:
         obstacles: Sequence[Obstacle],
         now: float,
     ) -> m.BaseTarget | None:
-        """`points` (n, 2) [map] is what the lidar sees around, `obstacles` the people there.
+        """The next target; `points` (n, 2) [map] is what the lidar sees around, `obstacles` the people there.
 
         Raises:
             Ended: arrived, or failed TIMEOUT, NO_PATH, BLOCKED, or PERSON_IN_WAY where only people block the way.
@@ -103,7 +103,7 @@ class Navigator:
         return self._follow(pose, points, obstacles, now)
 
     def _without_odometry(self, now: float) -> m.BaseTarget | None:
-        """The goal itself is sent, once a second, and the base's own controller does the rest."""
+        """The goal itself as the target, once a second: without odometry the base's own controller does the rest."""
         if self._progress.deadline == math.inf:
             self._progress.allow(self._config.timeout_margin * 2, now)
         if now > self._progress.deadline:
@@ -115,17 +115,17 @@ class Navigator:
 
     @property
     def begun(self) -> bool:
-        """The first plan has been made."""
+        """True once the first plan was made."""
         return self._targets.start is not None
 
     def ahead(self, pose: Pose2, now: float) -> list[Point]:
-        """The way that is left [map], planned anew where it was left; empty: there is none now."""
+        """The rest of the path [map], planned anew where there is none; empty if none is found."""
         if self._route.follower is None and self.begun and self._route.due(now):
             self._plan(pose, now)
         return self._route.follower.left() if self._route.follower is not None else []
 
     def give_way(self, spot: Pose2, now: float) -> m.BaseTarget:
-        """Go to `spot` [map] meanwhile, or stay there; raises `Ended` TIMEOUT."""
+        """The target while another robot goes first: `spot` [map]; raises `Ended` TIMEOUT."""
         self._progress.check(now)
         self._progress.hold_up(now)
         self._recovery.under_way, self.doing = None, "GIVING_WAY"
@@ -133,13 +133,13 @@ class Navigator:
         return self._targets.aside(spot)
 
     def go_on(self, now: float) -> None:
-        """The way is free again, from wherever the robot is by now."""
+        """Go on to the goal after giving way: the next step plans from where the robot is."""
         self._progress.restart(now)
         self._route.follower, self._route.planned_at = None, -math.inf
         self.waiting.clear()
 
     def relocated(self, now: float) -> None:
-        """The robot is not where it seemed to be: everything but the goal begins anew with the next step."""
+        """Begin anew with the next step, keeping only the goal: the pose estimate has jumped."""
         self._recovery.relocated()
         self._route.abandon()
         self._targets.start, self._progress.deadline = None, math.inf
@@ -147,7 +147,7 @@ class Navigator:
         self.waiting.clear()
 
     def _begin(self, pose: Pose2, now: float) -> None:
-        """The first plan.
+        """Make the first plan.
 
         Raises:
             Ended: NO_PATH, when even an empty flat has none.
@@ -160,7 +160,7 @@ class Navigator:
         self._progress.allow(self._config.timeout_margin + self._config.blocked_wait * 10, now)
 
     def _plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> bool:
-        """Choose pose and path anew; False, and nothing changes, when there is no path now."""
+        """Choose pose and path anew; when there is no path now, returns False and changes nothing."""
         found = self._route.plan(pose, now, people)
         if found == "detour":
             self.recoveries += 1
@@ -187,7 +187,7 @@ class Navigator:
         return self._targets.ahead(ahead.pose, ahead.final)
 
     def _watch(self, ahead: Lookahead, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> None:
-        """Lose patience with a blocked path, and with no progress on a free one."""
+        """Begin a recovery when the path has been blocked, or the robot has made no progress, for too long."""
         if self._progress.advanced(ahead.remaining, now) and (
             self.doing != "DETOUR" or now - self._route.detour_at > DETOUR_PAUSE
         ):
@@ -205,7 +205,7 @@ class Navigator:
             self._recover(pose, now, "no progress")
 
     def _replan(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
-        """Around what was seen; when there is no path round it, on towards it, but not up to it."""
+        """Plan around what was seen; where no path leads round it, drive the old one up to `keep_off` from it."""
         if (self._plan(pose, now, people) and not self._route.waits) or self._route.follower is None:
             return
         ahead = self._route.blocked_at(pose)
@@ -213,7 +213,7 @@ class Navigator:
             self._route.follower = None
 
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
-        """No path at this moment: stand, look for one every second, lose patience in time."""
+        """The target while there is no path: stand, plan every second, begin a recovery after too long."""
         if self._route.due(now):
             if self._plan(pose, now, obstacles):
                 self.waiting.clear()
@@ -227,7 +227,7 @@ class Navigator:
         return self._targets.next(pose)
 
     def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF", by_people: bool = False) -> None:
-        """Raises `Ended` BLOCKED, or PERSON_IN_WAY, after the last retry."""
+        """Begin to back off; raises `Ended` BLOCKED, or PERSON_IN_WAY, after the last retry."""
         self._recovery.back_off(pose, now, why, PERSON if by_people else "BLOCKED", doing == "HELD_UP")
         self.recoveries += 1
         self.doing = doing
@@ -236,7 +236,7 @@ class Navigator:
     def _go_back(
         self, retreat: Retreat | PassingPlace, pose: Pose2, points: Array | None, people: Sequence[Obstacle], now: float
     ) -> m.BaseTarget:
-        """Out of the way, and then another plan."""
+        """The target of a recovery under way; plans anew once that is over."""
         if isinstance(retreat, PassingPlace):
             self.doing = "GIVING_WAY"
             self._progress.hold_up(now)

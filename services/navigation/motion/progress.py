@@ -1,4 +1,4 @@
-"""Is a goal getting anywhere: its time limit, its progress along the path, and how long the path has been blocked."""
+"""The clocks of a goal: its time limit, time without progress, time that its path is blocked, meetings with people."""
 
 import math
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ stands its ground as somebody comes, as people in a narrow place do, and goes on
 
 
 class Progress:
-    """Of one goal: `deadline` is the robot time [s] at which it fails, inf before it is set."""
+    """Time limit and progress of one goal; `deadline` is the robot time [s] at which it fails, inf before it is set."""
 
     def __init__(self, config: NavigationConfig, now: float) -> None:
         self._config, self._started = config, now
@@ -41,12 +41,12 @@ class Progress:
         self._held_up, self._held_at = 0.0, now
 
     def check(self, now: float) -> None:
-        """Raises `Ended` TIMEOUT after the deadline."""
+        """Check the time limit; raises `Ended` TIMEOUT after it."""
         if now > self.deadline:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
 
     def hold_up(self, now: float) -> None:
-        """Once a step while people keep it from getting on: that is not its fault."""
+        """Extend the time limit, by HELD_UP at most; call in each step in which people keep the robot waiting."""
         self._best_at = now
         lost = min(now - self._held_at, TICK)
         self._held_at = now
@@ -59,33 +59,33 @@ class Progress:
         self.deadline = now + seconds
 
     def follow(self, length: float, now: float) -> None:
-        """A path of `length` [m] begins: the limit leaves time for it and is never brought forward."""
+        """Begin a path of `length` [m]: the time limit is put off until it can be driven, never brought forward."""
         self._best, self._best_at = length, now
         limit = now + length / self._config.min_average_speed + self._config.timeout_margin
         self.deadline = max(limit, self.deadline if math.isfinite(self.deadline) else 0.0)
 
     def advanced(self, remaining: float, now: float) -> bool:
-        """True when less path remains [m] than ever before."""
+        """True when less path remains [m] than at any time before; notes it as progress."""
         if remaining >= self._best - STEP:
             return False
         self._best, self._best_at = remaining, now
         return True
 
     def excuse(self, now: float) -> None:
-        """Not getting on until now has a known reason."""
+        """Count the time without progress from now on: there was a known reason for it."""
         self._best_at = now
 
     def restart(self, now: float) -> None:
-        """Whatever remains is progress."""
+        """Forget the progress so far, as for another path."""
         self._best, self._best_at = math.inf, now
 
     def stuck(self, now: float) -> bool:
-        """True when there has been no progress for too long."""
+        """True when there has been no progress for longer than `navigation.no_progress`."""
         return now - self._best_at > self._config.no_progress
 
 
 class BlockedTimer:
-    """How long a path has been blocked; the time in which somebody may just be passing is not counted."""
+    """Measures how long a path has been blocked, less `patience` seconds in which people may be passing by."""
 
     def __init__(self, patience: float = PASSING) -> None:
         self._since: float | None = None
@@ -93,7 +93,7 @@ class BlockedTimer:
         self._left = patience
 
     def blocked(self, by_people: bool, now: float) -> float:
-        """Once a step while the path is blocked: for how long it has been [s], but for who may be people."""
+        """How long the path has been blocked [s]; call in each step while it is."""
         if self._since is None:
             self._since = self._at = now
         elif self._left > 0.0 and by_people:
@@ -103,17 +103,17 @@ class BlockedTimer:
         return now - self._since
 
     def clear(self) -> None:
-        """The path is free, or another one is tried."""
+        """Start anew: the path is free, or another one is tried."""
         self._since = None
 
 
 def anybody_near(here: Point, people: Sequence[Obstacle]) -> bool:
-    """True when somebody is so near that they may be what blocks the path."""
+    """True when somebody is within NEAR of the robot, and so may be what blocks the path."""
     return any(math.dist((o.x, o.y), here) < NEAR + o.radius for o in people)
 
 
 def waiting_for(here: Point, people: Sequence[Obstacle], by_people: bool = False) -> str:
-    """What a robot at `here` that cannot go on does: WAITING, or PERSON_IN_WAY where somebody stands before it.
+    """What is reported of a robot at `here` that cannot go on: PERSON_IN_WAY with somebody within CLOSE, else WAITING.
 
     `by_people`: they are known to be all that blocks its way, near or not.
     """
@@ -122,7 +122,7 @@ def waiting_for(here: Point, people: Sequence[Obstacle], by_people: bool = False
 
 
 class Standoff:
-    """A person and the robot that each wait for the other."""
+    """Detects that a person and the robot wait for each other, and counts how often they have met."""
 
     def __init__(self) -> None:
         self._since = self._at = -math.inf
@@ -130,16 +130,16 @@ class Standoff:
 
     @property
     def again(self) -> bool:
-        """They have met so often that giving room has not helped."""
+        """True when they have met so often that giving room has not helped."""
         return self._met >= MEETINGS
 
     def met(self, now: float) -> None:
-        """Once a step while the robot makes room for who comes: another meeting, unless the last one was just now."""
+        """Count a meeting, unless the last one was within LATER; call in each step in which the robot makes room."""
         if now - self._met_at > LATER:
             self._met, self._met_at = self._met + 1, now
 
     def with_whom(self, here: Point, people: Sequence[Obstacle], now: float) -> Point | None:
-        """Once a step while a person stands before the robot: where, once that has lasted; None until then."""
+        """Where the nearest person stands once that has lasted, else None; call in each step with a person near."""
         if now - self._at > TICK:
             self._since = now
         self._at = now

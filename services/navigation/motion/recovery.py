@@ -1,4 +1,4 @@
-"""What the robot does when it cannot get on: back the way it came, or aside for who waits for it to go first."""
+"""Recovery of a blocked goal: back a little the way the robot came, or aside for a person who waits for it."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ OUT_OF_SIGHT = 3.0
 
 
 class Recovery:
-    """Of one goal. `under_way` is the way back or aside that the robot is on; None: it is on none."""
+    """The recoveries of one goal; `under_way` is the motion back or aside that is being carried out, None for none."""
 
     def __init__(self, config: NavigationConfig, costmap: Costmap, planner: PathPlanner) -> None:
         self._config, self._map, self._planner = config, costmap, planner
@@ -29,23 +29,23 @@ class Recovery:
 
     @property
     def stands_its_ground(self) -> bool:
-        """Room was given to people again and again, and they came back each time."""
+        """True once people have come back again and again after room was made: the robot then makes none any more."""
         return self._standoff.again
 
     def made_room(self, now: float) -> None:
-        """Once a step while it stops or steps aside for who comes."""
+        """Note that the robot makes room; call in each step in which it stops or steps aside for somebody."""
         self._standoff.met(now)
 
     def came_by(self, pose: Pose2) -> None:
-        """Once a step: where the robot is [map]."""
+        """Note where the robot is [map], in each step, for the way back."""
         self._breadcrumbs.add(pose)
 
     def relocated(self) -> None:
-        """The robot is not where it seemed to be, nor did it come that way."""
+        """Forget the way back: the pose estimate has jumped."""
         self.under_way, self._breadcrumbs = None, Breadcrumbs()
 
     def back_off(self, pose: Pose2, now: float, why: str, code: str, touching: bool = False) -> None:
-        """Go back a little the way it came, before another path is looked for; from what it is `touching` as well.
+        """Begin to go back the way the robot came, then plan anew; `touching`: away from what it touches.
 
         These are all the retries of a blocked path: whoever sent the goal adds none.
 
@@ -64,7 +64,7 @@ class Recovery:
         self.under_way = Retreat(back, now + config.back_off_time, config.corridor)
 
     def let_pass(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
-        """Once a step while a person stands before the robot: who waits for it to go first gets room.
+        """Begin to step aside for a person who waits for the robot; call in each step with a person before it.
 
         Not once it goes on behind them: who it loses sight of is soon forgotten to be a person.
         """

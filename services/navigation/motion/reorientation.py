@@ -1,4 +1,4 @@
-"""A lost robot drives, carefully, to where it can tell in which of several places it is."""
+"""Driving a lost robot, carefully, to where the lidar can tell in which of several places it is."""
 
 from common import messages as m
 from common.bus.port import Io, Job
@@ -17,7 +17,7 @@ PAUSE = 2.0
 
 
 class Reorientation:
-    """From the moment a goal meets a robot that is lost; poses are in the frame of its wheels."""
+    """The motion of a lost robot from when it gets a goal until it knows where it is; poses are in frame odom."""
 
     def __init__(self, config: NavigationConfig, io: Io, state: StateEstimator, costmap: Costmap, now: float) -> None:
         self._config, self._io, self._state, self._map = config, io, state, costmap
@@ -30,7 +30,7 @@ class Reorientation:
         self._drives = 0
 
     def step(self, reached: list[m.GoalReached], now: float) -> m.BaseTarget | None:
-        """The next target pose [odometry] for the base; None: it stands.
+        """The next target pose [odom] for the base; None: it should stand.
 
         Raises:
             Ended: LOST or MAP_MISMATCH, after `lost_patience`.

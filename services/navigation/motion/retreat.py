@@ -1,4 +1,4 @@
-"""Out of the way: a little back the way the robot came, or to a place where a person gets past it."""
+"""The two motions of a recovery: a little back the way the robot came, or to a place where a person gets past it."""
 
 import math
 from collections.abc import Sequence
@@ -29,13 +29,13 @@ AT = 0.1
 
 
 class Retreat:
-    """A step back to `back` [map] until robot time `until` [s]."""
+    """A motion back to the pose `back` [map] that lasts until robot time `until` [s]."""
 
     def __init__(self, back: Pose2, until: float, corridor: float) -> None:
         self._back, self._until, self._corridor = back, until, corridor
 
     def over(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> bool:
-        """The retreat has ended: it is time to look for another path."""
+        """True when the time is up: another path should be planned."""
         return now >= self._until
 
     def step(self, pose: Pose2, points: Array | None) -> Pose2:
@@ -46,7 +46,7 @@ class Retreat:
 
 
 class PassingPlace:
-    """A place off the way of a person who stood at `person` when the robot set out on `follower`'s path there."""
+    """A motion along `follower`'s path to where a person gets past; `person` [map]: where they stood at first."""
 
     def __init__(self, follower: PathFollower, person: Point, costmap: Costmap, radius: float, now: float) -> None:
         self._follower, self._person, self._map = follower, person, costmap
@@ -54,7 +54,7 @@ class PassingPlace:
         self._there = False
 
     def over(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> bool:
-        """The person has gone on, or does not want to."""
+        """True when the person has gone on, or has not done so in time."""
         if not self._there and math.dist(pose[:2], self._follower.goal[:2]) < AT:
             self._there, self._until = True, now + STAYING
         near = any(math.dist((p.x, p.y), self._person) < PASSED for p in people)
@@ -66,7 +66,7 @@ class PassingPlace:
 
 
 def passing_place(pose: Pose2, person: Point, costmap: Costmap, planner: PathPlanner) -> list[Point] | None:
-    """The path to where there is room for a person to get past the robot; None where it is best off already."""
+    """The path to the place nearby with the most room for a person to pass; None when none is better than here."""
     field = planner.field(pose[0], pose[1])
     rows, columns = np.nonzero(field.cost < FARTHEST)
     if not len(rows):

@@ -1,4 +1,4 @@
-"""The pose chosen among several, and the path there as long as it holds."""
+"""Choice of a pose among several and of the path to it, kept until a clearly better one is found or it is blocked."""
 
 import math
 from collections.abc import Sequence
@@ -45,7 +45,7 @@ class Shut(NamedTuple):
 
 
 class Route:
-    """`choices` are approach poses [map], each with a penalty [m]. `follower` follows the path; None: there is none."""
+    """The chosen pose and its path. `choices`: poses [map] with penalties [m]; `follower`: of the path, or None."""
 
     def __init__(
         self, config: NavigationConfig, costmap: Costmap, planner: PathPlanner, choices: list[tuple[float, Pose2]]
@@ -63,29 +63,29 @@ class Route:
 
     @property
     def outdated(self) -> bool:
-        """The costmap has changed since the last plan, or it is waited for somebody who stands in the path."""
+        """True when the costmap has changed since the last plan, or the robot waits for somebody in the path."""
         return self._map.version != self._planned_version or self.waits
 
     @property
     def waits(self) -> bool:
-        """Another way has been found, but it is not worth going yet."""
+        """True while another path is known, but waiting for the first one to become free is expected to be quicker."""
         return self._shut is not None
 
     def due(self, now: float, period: float = REPLAN_PERIOD) -> bool:
-        """The last plan was made more than `period` [s] ago."""
+        """True when the last plan was made more than `period` [s] ago."""
         return now - self.planned_at > period
 
     def take_new_path(self) -> list[Point] | None:
-        """The path, once after it has changed."""
+        """The path, the first time that it is asked for after a change, else None."""
         path, self._new_path = self._new_path, None
         return path
 
     def possible(self, pose: Pose2) -> bool:
-        """True when an empty flat has a path to one of the choices."""
+        """True when the static map alone has a path to one of the choices."""
         return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
 
     def blocked_by(self, pose: Pose2, now: float) -> Blocker:
-        """Why a plan found no path to any of the choices: without that there is one."""
+        """What has to go away for there to be a path: only people, also what came lately, or what stands for long."""
         here, goals = (pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices]
         if self._planner.possible(here, goals, self._map.distance_to_things()):
             return "people"
@@ -94,7 +94,7 @@ class Route:
         return "things"
 
     def plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> Found:
-        """Choose the pose to stand at and the path there; without one at this moment nothing changes.
+        """Choose the pose to stand at and the path there; changes nothing where no path is found.
 
         Somebody of the `people` around who stands in the path is waited for as long as another way would take longer,
         which at worst takes twice the time of who knew what they do. The other way, once it is gone, is not given up
@@ -131,11 +131,11 @@ class Route:
         return found
 
     def abandon(self) -> None:
-        """Everything begins anew."""
+        """Forget the path, and every reason to keep to one."""
         self.follower = self._shut = self._given_up = None
 
     def _now_shut(self, pose: Pose2, now: float) -> Shut | None:
-        """The path that is blocked, where it is now; once it is given up, as it was then."""
+        """The blocked path: where it is blocked now or, once the path has been given up, as noted before."""
         old, before = self.follower, self._shut
         if old is None:
             return before
@@ -143,16 +143,16 @@ class Route:
         return before._replace(at=at) if before is not None else Shut(at, now, old.remaining(pose))
 
     def _waits_for(self, extra: float, shut: Shut, people: Sequence[Obstacle], now: float) -> bool:
-        """True while it is better to wait for who stands there than to go a way that is `extra` [m] longer."""
+        """True while waiting for a person in the path seems quicker than a path that is `extra` [m] longer."""
         somebody = any(math.dist((o.x, o.y), shut.at) < BY + o.radius for o in people)
         return somebody and extra > max(ROUND, (now - shut.since) * self._speed)
 
     def _goes_round(self, pose: Pose2) -> bool:
-        """True while another way is under way and what stood in the first one is out of sight: it may stand there."""
+        """True while the robot is on a detour and cannot see yet whether the first path is free again."""
         if self._given_up is not None and self._map.line_clearance((pose[0], pose[1]), self._given_up) > 0.0:
             self._given_up = None
         return self._given_up is not None
 
     def blocked_at(self, pose: Pose2) -> float | None:
-        """How far ahead [m] something that was seen lies on the path; None when it is clear, or there is none."""
+        """How far ahead [m] something that was seen blocks the path; None when it is clear, or there is no path."""
         return self.follower.blocked_at(pose, self._map, self._radius) if self.follower is not None else None

@@ -6,7 +6,7 @@ from services.navigation.ended import Ended
 
 
 class Targets:
-    """The goal itself bears `name`, the poses on the way there `name#1`, `name#2` and so on.
+    """Makes the target poses of a goal: the goal itself has the id `name`, poses on the way `name#1`, `name#2`, ...
 
     `start` is where the goal was begun [map], None before. A base may report no motion, or have no odometry: then what
     it says that it has reached is where it is.
@@ -19,7 +19,7 @@ class Targets:
         self.start: Pose2 | None = None
 
     def where(self, pose: Pose2 | None, reached: list[m.GoalReached]) -> Pose2 | None:
-        """`pose` by odometry, or where the base says it is while odometry shows no motion.
+        """The base's pose: `pose` by odometry, or the target that the base has reached while odometry shows no motion.
 
         The base's word may be there before the odometry of the same motion: from the first motion on that is believed.
 
@@ -41,21 +41,21 @@ class Targets:
         return f"{self._name}#{self._count}"
 
     def goal(self, pose: Pose2) -> m.BaseTarget:
-        """The goal itself."""
+        """The target for the goal itself."""
         return m.BaseTarget(x=pose[0], y=pose[1], theta=pose[2], id=self._name)
 
     def next(self, pose: Pose2) -> m.BaseTarget:
-        """Another pose on the way."""
+        """A target for another pose on the way."""
         self._count += 1
         return m.BaseTarget(x=pose[0], y=pose[1], theta=pose[2], id=self._newest)
 
     def ahead(self, pose: Pose2, final: bool) -> m.BaseTarget:
-        """A pose on the path; `final`: its end."""
+        """The target for a pose on the path; `final`: it is the path's end."""
         self._sent = pose
         target = self.next(pose)
         return self.goal(pose) if final else target
 
     def aside(self, pose: Pose2) -> m.BaseTarget:
-        """A pose off the path, to which nothing holds the base: its word on it is no evidence."""
+        """The target for a pose off the path; that the base reports it as reached is no evidence of where it is."""
         self._sent = None
         return self.next(pose)

@@ -1,4 +1,4 @@
-"""Who or what a robot that cannot get on waits for, and for how long."""
+"""Waiting while the path is blocked or there is none: what the robot waits for, and when that has lasted too long."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from services.navigation.planning.costmap import Costmap
 
 
 class Waiting:
-    """Of one goal. `robots` are circles (x, y, radius) [map, m] of robots that are about to make way; `patience`: how
+    """The waiting of one goal. `robots`: circles (x, y, radius) [map, m] of robots about to make way; `patience`: how
     long who may be people are waited for [s]."""
 
     def __init__(
@@ -26,30 +26,30 @@ class Waiting:
 
     @property
     def for_people(self) -> bool:
-        """People are all that blocks the way."""
+        """True when only people block the way."""
         return self._blocker == "people"
 
     def on_the_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
-        """Once a step before what blocks the path: what the robot does."""
+        """Call in each step in which the path is blocked; returns what the robot does (`Navigator.doing`)."""
         self._progress.excuse(now)
         somebody = self._map.people_pass or anybody_near((pose[0], pose[1]), people)
         self._blocker = "people" if somebody else "things"
         return self._before(pose, people, now, by_people=False)
 
     def without_a_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
-        """Once a step while no path leads to the goal: what the robot does."""
+        """Call in each step in which there is no path to the goal; returns what the robot does (`Navigator.doing`)."""
         doing = self._before(pose, people, now, self.for_people)
         if self._blocker == "newcomers":
             self._progress.hold_up(now)
         return doing
 
     def shut(self, blocker: Blocker) -> None:
-        """No path leads to the goal now, and this is why."""
+        """Note what kind of obstacle leaves no path to the goal."""
         self._blocker = blocker
         self._map.let_people_pass(self.for_people and self._recovery.stands_its_ground)
 
     def _before(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool) -> str:
-        """What blocks is a robot, a person, who may want to get past this one, or something."""
+        """ROBOT_IN_WAY, PERSON_IN_WAY or WAITING by what is near; makes room for a person who waits for the robot."""
         if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
             self._progress.hold_up(now)
             self._timer.clear()
@@ -61,9 +61,9 @@ class Waiting:
         return doing
 
     def over(self, now: float) -> bool:
-        """Once a step after that: it has lasted too long."""
+        """True when the robot has waited too long; call in each step after `on_the_way` or `without_a_way`."""
         return self._timer.blocked(self._blocker != "things", now) > self._limit
 
     def clear(self) -> None:
-        """The way is free, or another one is tried."""
+        """End the waiting: the path is free, or another one is tried."""
         self._timer.clear()

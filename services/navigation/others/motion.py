@@ -1,4 +1,4 @@
-"""Where two robots will be: one on its path, the other on the one that it has told. Pure."""
+"""Prediction of where two robots will be, each on its path, and whether they meet. Pure."""
 
 import math
 from dataclasses import dataclass, field
@@ -39,17 +39,17 @@ class Way:
         object.__setattr__(self, "lengths", np.concatenate(([0.0], np.cumsum(steps))))
 
     def at(self, distance: Array) -> Array:
-        """Points (k, 2) so far [m] (k,) along it; beyond its end it stands there."""
+        """Points (k, 2) at the lengths (k,) [m] along the path; its last point for lengths beyond its end."""
         x, y = (np.interp(distance, self.lengths, column) for column in self.points.T)
         return np.stack((x, y), axis=-1)
 
     def resampled(self, step: float) -> "Way":
-        """With a point every `step` [m]."""
+        """The same path with a point every `step` [m]."""
         length = float(self.lengths[-1])
         return Way(self.at(np.arange(0.0, length + step / 2, step) if length > 0 else np.zeros(1)))
 
     def cut(self, length: float) -> "Way":
-        """Its first `length` [m]."""
+        """The first `length` [m] of the path."""
         return Way(self.points[: max(1, int(np.searchsorted(self.lengths, length, side="right")))])
 
 
@@ -75,7 +75,7 @@ class Other:
 
 
 def passes(way: Way, radius: float, other: Other) -> bool:
-    """True when a robot that goes on meets the other at none of the speeds that this one may have."""
+    """True when a robot that goes on does not meet the other, whatever speed the other drives at."""
     mine = way.at(np.maximum(_TIMES - LAG, 0.0) * SPEED)
     apart = math.dist(way.points[0], other.place)
     needed = min(radius + other.radius + GAP, apart - 0.02)
@@ -87,7 +87,7 @@ def passes(way: Way, radius: float, other: Other) -> bool:
 
 
 def closes_in(way: Way, radius: float, other: Other) -> bool:
-    """True when a robot that goes on comes too near to the other, on its way too, before long."""
+    """True when a robot that goes on soon comes too near to the other one, which also goes on."""
     times = _TIMES[_TIMES <= SOON]
     apart = math.dist(way.points[0], other.place)
     gaps = np.hypot(*(way.at(times * SPEED) - other.way.at(times * SPEED)).T)
@@ -95,7 +95,7 @@ def closes_in(way: Way, radius: float, other: Other) -> bool:
 
 
 def escapes(way: Way, radius: float, other: Other) -> bool:
-    """True when a robot gets along `way` although the other goes on as far as its brake lets it."""
+    """True when a robot can drive along `way` without meeting the other, which goes on until its own brake stops it."""
     apart = math.dist(way.points[0], other.place)
     sum_of_radii = radius + other.radius
     needed, brake = min(sum_of_radii + TOUCHING, apart - 0.01), sum_of_radii + BRAKED

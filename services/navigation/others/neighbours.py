@@ -1,4 +1,4 @@
-"""The other robots of the flat: what they tell of their ways, what they are told of this one's, and who goes first."""
+"""The other robots of the flat: drive intents received and sent, and the right of way between them and this robot."""
 
 import math
 from dataclasses import dataclass
@@ -47,8 +47,10 @@ class _Known:
 
 
 class Neighbours:
-    """`first` are those that go first, `others` those that make way for this one; in the `circles` (x, y, radius)
-    [map, m] points are of one of them."""
+    """The other robots: `first` go first, `others` make way for this one.
+
+    In the `circles` (x, y, radius) [map, m] lidar points are of one of them.
+    """
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap, planner: PathPlanner) -> None:
         self._config, self._io, self._map = config, io, costmap
@@ -66,12 +68,12 @@ class Neighbours:
 
     @property
     def alone(self) -> bool:
-        """Nobody else is on the router: it has no name."""
+        """True for a robot without a name, which cannot have others on its router."""
         return not self._io.robot or self._config.flat == "none"
 
     @property
     def flat(self) -> str:
-        """What this robot calls the flat: as it is told, else its simulation's world, else by the map."""
+        """The flat's identifier, the same for all its robots: by configuration, the simulation's world or the map."""
         if self._config.flat:
             return self._config.flat
         status = self._io.latest(topics.SIM_STATUS)
@@ -79,7 +81,7 @@ class Neighbours:
 
     # --- hearing
     def hear(self, pose: Pose2 | None, driving: bool, now: float) -> None:
-        """Take what the others have told; `driving`: this robot has a goal."""
+        """Take the newest drive intents of the others; `driving`: this robot has a goal."""
         if self.alone:
             return
         for name, told in self._io.others(topics.DRIVE_INTENT).items():
@@ -114,7 +116,7 @@ class Neighbours:
                 old.stood, old.since = here, now
 
     def _stands(self, told: m.DriveIntent) -> bool:
-        """It does not get out of the way: it is planned round."""
+        """True for a robot that does not get out of the way, and so is an obstacle."""
         if told.state == "free":
             return self._io.robot in told.cannot_yield_to
         return told.state == "fixed"
@@ -133,7 +135,7 @@ class Neighbours:
 
     # --- giving way
     def steer(self, navigator: Navigator | None, pose: Pose2 | None, points: Array | None, now: float) -> Pose2 | None:
-        """Where this robot goes instead of on [map], for those that go first; None: on.
+        """The pose [map] to go to while others go first; None when the robot may go on along its own path.
 
         `navigator` drives it, None where it drives nowhere; `points` (n, 2) is what the lidar sees.
         """
@@ -155,7 +157,7 @@ class Neighbours:
         return spot
 
     def _too_near(self, pose: Pose2, navigator: Navigator, now: float) -> bool:
-        """Somebody who is getting out of the way is not out of it yet."""
+        """True while another robot that makes way has not done so yet."""
         near = [
             o for o in self.others if now - self._known[o.name].since < MOVING and math.dist(pose[:2], o.place) < NEAR
         ]
@@ -166,7 +168,7 @@ class Neighbours:
 
     # --- telling
     def tell(self, pose: Pose2 | None, path: list[Point], now: float) -> None:
-        """Tell the others where this robot is and which way it takes, five times a second."""
+        """Publish this robot's drive intent, five times a second."""
         if self.alone or pose is None or now - self._told_at < PERIOD - 1e-6:
             return
         self._told_at = now

@@ -1,4 +1,4 @@
-"""Who goes first where two robots meet, and what the other one does: wait, or get out of the way. Pure.
+"""The right of way where two robots meet: which goes first, and whether the other waits or gets out of the way. Pure.
 
 Of two robots that drive the one whose name comes first in the alphabet goes first. One that finds no room to let
 the other pass says so, and then goes first. A robot with nothing to do makes way for everybody who drives.
@@ -46,7 +46,7 @@ def goes_first(me: str, state: DriveState, stuck: bool, other: str, their_state:
 
 
 class RightOfWay:
-    """Of one robot of `radius` [m]. `for_whom` are those to which it gives way now, `stuck` those to which it cannot.
+    """How a robot of `radius` [m] gives way: `for_whom` are the robots it does so for, `stuck` those it cannot.
 
     `corridor` and `lookahead` [m] are the path follower's.
     """
@@ -68,21 +68,21 @@ class RightOfWay:
 
     @property
     def way(self) -> list[tuple[float, float]]:
-        """The way [map] to the place aside, empty for a robot that waits where it is."""
+        """The path [map] to the place where it waits, empty for a robot that waits where it is."""
         return self._follower.path if self._follower is not None else []
 
     def stuck(self, now: float) -> list[str]:
-        """The robots to which it finds no room to give way."""
+        """The robots for which it finds no room to give way."""
         return [name for name, since in self._stuck.items() if now - since < STUCK]
 
     def go_on(self) -> None:
-        """Nobody is to be given way."""
+        """Stop giving way: nobody is near any more."""
         self.for_whom, self._follower, self._clear_since = [], None, None
 
     def step(
         self, pose: Pose2, ahead: Array | None, first: Sequence[Other], points: Array | None, now: float
     ) -> Pose2 | None:
-        """Where to go instead [map]; None: on, on its own way.
+        """The pose [map] to go to while others go first; None when the robot may go on along its own path.
 
         `ahead` (n, 2) are the points of its own way, None for a robot that drives nowhere; `first` are the robots that
         go first, `points` (n, 2) what the lidar sees.

@@ -29,7 +29,7 @@ class Saved(msgspec.Struct):
 
 
 class Changes:
-    """Cells of a grid of `shape`; `lasting` (rows, columns) is where something stands that the map does not have.
+    """Changes in a grid of `shape`; `lasting` (rows, columns): where something stands that the map does not have.
 
     `after` [s]: how far apart two sightings are at least.
     """
@@ -41,25 +41,25 @@ class Changes:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Cells (rows, columns) in which something was seen and that were not seen through since."""
+        """Cells (rows, columns) in which something was seen, and through which no ray has passed since."""
         return (self._first < np.inf) | self.lasting
 
     def occupied(self, cells: Cells, now: float) -> None:
-        """Something is seen in these cells."""
+        """Note that something is seen in these cells."""
         self._first[cells] = np.minimum(self._first[cells], now)
         self.lasting[cells] |= now - self._first[cells] >= self._after
 
     def passed(self, cells: Cells) -> None:
-        """These cells were seen through."""
+        """Note that rays have passed through these cells."""
         self._first[cells], self.lasting[cells] = np.inf, False
 
     def forget_brief(self) -> None:
-        """Forget what does not last: it was not where it seemed to be."""
+        """Forget what is not lasting: the pose from which it was seen was wrong."""
         self._first[:] = np.inf
 
 
 class ChangesFile:
-    """Keeps the lasting changes of a map in a directory; None: nowhere. `warn` hears why that was not possible."""
+    """Saves the lasting changes of a map in a directory (None: nowhere); `warn` is told why that failed."""
 
     def __init__(self, directory: Path | None, plan: FloorPlan, warn: Callable[[str], None]) -> None:
         self._plan = fingerprint(plan)
@@ -69,7 +69,7 @@ class ChangesFile:
         self._next = 0.0
 
     def load(self, changes: Changes) -> int:
-        """Enter what was kept; how many cells that is [count]."""
+        """Enter the saved changes in `changes`; returns the number of cells."""
         saved = self._file.load()
         rows, columns = changes.lasting.shape
         cells = [(r, c) for r, c in saved.cells if 0 <= r < rows and 0 <= c < columns] if saved is not None else []
@@ -79,7 +79,7 @@ class ChangesFile:
         return len(cells)
 
     def save(self, changes: Changes, now: float) -> None:
-        """Write what has changed, now and then."""
+        """Write the changes, when there are new ones and the last time is long enough ago."""
         if self._saved is None:
             self._saved = np.zeros_like(changes.lasting)
         if now < self._next or (self._saved == changes.lasting).all():
@@ -91,7 +91,7 @@ class ChangesFile:
 
 
 def fingerprint(plan: FloorPlan) -> str:
-    """Names a map."""
+    """A hash that identifies a map."""
     return f"{zlib.crc32(msgspec.json.encode(_shape(plan))):08x}"
 
 

@@ -22,7 +22,7 @@ _FAR = 1.0
 
 
 class Costmap(Cells):
-    """What stands where: `static_distance` [m] is from each cell to the nearest obstacle of the static map, `obstacles`
+    """Obstacles on the floor: `static_distance` [m] is from each cell to the nearest one of the static map, `obstacles`
     what was seen besides. `memory`, `lasting_after` [s]: see `ObstacleLayer`."""
 
     def __init__(
@@ -42,7 +42,7 @@ class Costmap(Cells):
 
     @property
     def version(self) -> int:
-        """Grows with every change."""
+        """A number that grows with every change."""
         return self._version + self.obstacles.version
 
     # --- the static map
@@ -51,7 +51,7 @@ class Costmap(Cells):
         self.obstacles.explain(distance <= _EXPLAINED)
 
     def replace(self, grid: m.MapGrid) -> None:
-        """Another static map: what is occupied or unknown in `grid`, whose cells have this map's resolution.
+        """Replace the static map by the occupied and unknown cells of `grid`, whose resolution is this map's.
 
         Raises:
             ValueError: another resolution, or cells that do not have the grid's size.
@@ -85,7 +85,7 @@ class Costmap(Cells):
 
     # --- all that stands there
     def place(self, discs: Discs, of: str) -> None:
-        """Circles that are occupied besides, until other ones `of` this are told."""
+        """Mark circles as occupied, in place of those that were given for the same source `of` before."""
         old = self._discs.get(of, [])
         if len(discs) == len(old) and all(math.dist(a, b) < self.resolution for a, b in zip(discs, old, strict=True)):
             return
@@ -93,14 +93,14 @@ class Costmap(Cells):
         self._version += 1
 
     def let_people_pass(self, passing: bool) -> None:
-        """Whether paths lead through people, who walk on, or round them; the lidar's brake is for all of them."""
+        """Choose whether paths lead through people, who walk on, or round them; the lidar's brake is for them all."""
         if passing != self.people_pass:
             self.people_pass = passing
             self._version += 1
 
     @property
     def distance(self) -> Array:
-        """To the nearest obstacle, static or seen [m]; made when asked for."""
+        """Distance (rows, columns) [m] to the nearest obstacle, static or seen; computed when it is asked for."""
         if self._distance is None or self._distance[0] != self.version:
             seen = self.obstacles.things if self.people_pass else self.obstacles.known
             self._distance = self.version, self._distances(seen)

@@ -22,8 +22,11 @@ LATE = 4.0
 
 
 class LowThings:
-    """Places circles in a costmap. What the lidar saw itself when the picture was taken, as it does legs of which only
-    the feet are in the picture, is no longer there than what the lidar saw."""
+    """Enters low things in a costmap as circles.
+
+    Where the lidar saw something when the picture was taken, as it does of legs of which only the feet are in the
+    picture, the circle goes when the lidar no longer sees anything there.
+    """
 
     def __init__(self, costmap: Costmap) -> None:
         self._map = costmap
@@ -31,13 +34,13 @@ class LowThings:
         self._tall: dict[str, tuple[float, bool]] = {}
 
     def see(self, points: Array, now: float) -> None:
-        """What of a scan the map does not explain, points (n, 2) [map]."""
+        """Take the points (n, 2) [map] of a scan that the map does not explain."""
         self._scans.append((now, points))
         while self._scans[0][0] < now - LATE:
             self._scans.popleft()
 
     def place(self, objects: Sequence[m.WorldObject]) -> None:
-        """Enter those of the reported objects that are on the floor, but for what is doubted and was not seen since."""
+        """Enter the reported objects that are on the floor, except those not seen since the costmap was doubted."""
         lying = [o for o in objects if not o.held and o.position[2] - o.size[2] / 2 < ON_FLOOR]
         self._tall = {o.label: self._judged(o) for o in lying}
         circles = [_circle(o) for o in lying if o.seen_at > self._map.obstacles.doubted and self._stands(o)]

@@ -20,7 +20,7 @@ _BEHIND = 0.15
 
 
 class ObstacleLayer:
-    """Over `cells`; `explained` (rows, columns) is where the static map explains what is seen.
+    """Cells in which the lidar sees something; `explained` (rows, columns): those that the static map explains.
 
     `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`. `version` grows with
     every change. `doubted`: robot time [s] up to which what was seen last then may be gone.
@@ -37,21 +37,21 @@ class ObstacleLayer:
     # --- what is there
     @property
     def known(self) -> Mask:
-        """Where something is (rows, columns)."""
+        """Cells (rows, columns) where something is."""
         return self._seen.known
 
     @property
     def things(self) -> Mask:
-        """Where something is that was no person when it was seen last (rows, columns)."""
+        """Cells (rows, columns) with something that was no person when it was seen last."""
         return self._seen.things
 
     def settled(self, now: float) -> Mask:
-        """Where something is that has stood there for so long that it is a thing (rows, columns)."""
+        """Cells (rows, columns) with something that has stood there for too long to be a person."""
         return self._seen.settled(now)
 
     @property
     def empty(self) -> bool:
-        """Nothing is there that the static map does not have."""
+        """True when nothing is known beyond the static map."""
         return self._seen.empty
 
     def lasting_at(self, points: Array) -> Mask:
@@ -70,11 +70,11 @@ class ObstacleLayer:
         return found
 
     def seen_in(self, disc: Disc) -> bool:
-        """Something is in a circle."""
+        """True when something is known within the circle."""
         return bool(len(self._within([disc])[0]))
 
     def _within(self, discs: Discs) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Rows and columns of the cells in circles in which something is."""
+        """Rows and columns of the occupied cells within the circles."""
         rows, columns = self._seen.cells()
         if not len(rows) or not discs:
             return rows[:0], columns[:0]
@@ -134,7 +134,7 @@ class ObstacleLayer:
 
     # --- what is forgotten, and what is not
     def doubt(self, now: float, age: float) -> None:
-        """Forget what has been out of sight for `age` seconds: it may be gone."""
+        """Forget what has been out of sight for `age` seconds or longer, as it may be gone."""
         self.doubted = now - age
         rows, columns = self._seen.cells()
         gone = self._seen.unseen_for((rows, columns), age, now)
@@ -143,26 +143,26 @@ class ObstacleLayer:
             self.version += 1
 
     def disown(self, discs: Discs) -> None:
-        """Forget what was seen in circles: it was a robot."""
+        """Forget what was seen within the circles, as where another robot turns out to be."""
         cells = self._within(discs)
         if len(cells[0]):
             self._seen.drop(cells)
             self.version += 1
 
     def explain(self, explained: Mask) -> None:
-        """Another static map explains what is seen there (rows, columns)."""
+        """Replace the cells (rows, columns) that the static map explains."""
         self.explained = explained
         self._seen.drop(explained)
 
     def forget(self) -> None:
-        """Forget all that was seen of late: it was not where it seemed to be."""
+        """Forget all but the lasting changes: the pose from which it was seen was wrong."""
         self._seen.drop(self._seen.known)
         self.changes.forget_brief()
         self.version += 1
         self.remember(0.0)
 
     def remember(self, now: float) -> None:
-        """Take the lasting changes for seen at robot time `now` [s]."""
+        """Enter the lasting changes as seen at robot time `now` [s]."""
         kept = self.changes.lasting
         if kept.any():
             self._seen.keep(kept, now)

@@ -25,7 +25,7 @@ _LOST = 0.03
 
 @dataclass(frozen=True)
 class Field:
-    """Cost [m and more] from one cell to all others, with the cells before each on its path."""
+    """Path costs from one cell to all others [m, more where it is narrow], and the cell before each on its path."""
 
     start: tuple[int, int]
     cost: NDArray[np.float64]
@@ -41,7 +41,7 @@ class PathPlanner:
         self._version = -1
 
     def free(self, x: float, y: float) -> bool:
-        """True when the disc fits there."""
+        """True when the robot's disc fits at the point."""
         return self._map.clearance(x, y) >= self._radius
 
     def field(self, x: float, y: float) -> Field:

@@ -1,4 +1,4 @@
-"""What the lidar has seen of late and the static map does not have: when, for how long, and whether it is a person."""
+"""Grid of what the lidar has seen beyond the static map: when, for how long, and whether it is a person."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ _LASTING, _BRIEF = 2.0, 4.0
 
 
 class SeenCells:
-    """Cells of a grid of `shape`; `memory` [s]: how long what stands there is remembered once it is out of sight.
+    """Times of sight for each cell of a grid of `shape`; `memory` [s]: how long a standing thing out of sight is kept.
 
     Who is a person is forgotten as soon as what was seen for a moment only: people walk on.
     """
@@ -34,45 +34,45 @@ class SeenCells:
 
     @property
     def known(self) -> Mask:
-        """Where something is (rows, columns)."""
+        """Cells (rows, columns) where something is."""
         found: Mask = self._at > -np.inf
         return found
 
     @property
     def things(self) -> Mask:
-        """Where something is that was no person when it was seen last (rows, columns)."""
+        """Cells (rows, columns) with something that was no person when it was seen last."""
         return self.known & (self._person_until < self._at)
 
     def stood(self, now: float) -> Mask:
-        """Where something is that came before anybody who is around now, and was nobody (rows, columns)."""
+        """Cells (rows, columns) with a thing that was there before the people who are around now."""
         return self.things & (self._first < now - _NEW)
 
     def settled(self, now: float) -> Mask:
-        """Where something is that has stood there for so long that it is a thing (rows, columns)."""
+        """Cells (rows, columns) with something that has stood there for too long to be a person."""
         return self.things & (self._first < now - SETTLED)
 
     @property
     def empty(self) -> bool:
-        """Nothing was seen."""
+        """True when no cell has anything in it."""
         return not self.known.any()
 
     def cells(self) -> Cells:
-        """Rows and columns (n,) of where something is."""
+        """Rows and columns (n,) of the cells where something is."""
         rows, columns = np.nonzero(self.known)
         return rows, columns
 
     def mark(self, cells: Cells, now: float) -> None:
-        """Something is seen in these cells."""
+        """Note that something is seen in these cells."""
         self._at[cells], self._first[cells] = now, np.minimum(self._first[cells], now)
 
     def mark_people(self, cells: Cells, seconds: float, now: float) -> None:
-        """What came into these cells of late is a person, and counts as one for so long if it stands there."""
+        """Take what came into these cells lately for a person, for so many seconds if it stays."""
         until = self._person_until[cells]
         new = (now - self._first[cells] < _NEW) | (until >= now)
         self._person_until[cells] = np.where(new, np.maximum(until, now + seconds), until)
 
     def keep(self, cells: Cells | Mask, now: float) -> None:
-        """What is in these cells was there all along, and was seen at `now`."""
+        """Take what is in these cells for something that has always been there and was seen at `now`."""
         self._at[cells], self._first[cells] = np.maximum(self._at[cells], now), -np.inf
 
     def outdated(self, cells: Cells, now: float) -> NDArray[np.bool_]:
@@ -88,5 +88,5 @@ class SeenCells:
         return found
 
     def drop(self, cells: Cells | Mask) -> None:
-        """Nothing is in these cells."""
+        """Empty these cells."""
         self._at[cells], self._first[cells], self._person_until[cells] = -np.inf, np.inf, -np.inf

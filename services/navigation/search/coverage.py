@@ -14,7 +14,7 @@ STILL, STILL_ANGLE = 0.03, 0.04
 
 
 class SearchCoverage:
-    """Over all searches; a point is looked at when the camera has stood still before it for a while.
+    """When each point of the surfaces was last looked at, in all searches: with the base standing for a while.
 
     `viewpoints` may be exchanged for those of another camera in the same household.
     """
@@ -38,7 +38,7 @@ class SearchCoverage:
         return steady
 
     def worth(self, started: float, recent: float) -> Array:
-        """What looking at each point (p,) is worth to a search: nothing if it has done so since it `started`.
+        """Worth (p,) of looking at each point for a search: 0 for those looked at since it `started` [s].
 
         Points that were looked at up to `recent` [s] before that count LOOKED_AT_BEFORE.
         """

@@ -1,4 +1,4 @@
-"""`find` for an object that nobody has seen: viewpoint after viewpoint, until all is looked at or time is up."""
+"""Search for an object that was not seen yet: viewpoint after viewpoint, until all is looked at or time is up."""
 
 from common.geometry import Array, Pose2
 from services.navigation.config import NavigationConfig
@@ -9,7 +9,7 @@ from services.navigation.search.coverage import SearchCoverage
 
 
 class Search:
-    """One search. `fresh`: the next viewpoint is due without a look from here.
+    """One search; `fresh`: the next viewpoint is due at once, without a look from where the base stands.
 
     `likelihood` (p,): how likely the item is at each point of the coverage, the mean being 1; None: nobody knows.
     """
@@ -32,7 +32,7 @@ class Search:
         return len(self._tried)
 
     def timed_out(self, now: float) -> bool:
-        """False, or raises `Ended` TIMEOUT."""
+        """Whether there is time for another viewpoint: returns False, or raises `Ended` TIMEOUT."""
         limit = self._config.find_timeout
         if now > self._started + limit:
             raise Ended("failed", "TIMEOUT", f"no {self.item} after {limit:.0f} s and {self.looked} views")
