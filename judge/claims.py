@@ -1,4 +1,4 @@
-"""What the robot claims to have done: every success that it publishes or says aloud, when it does. Pure."""
+"""Claims of success: picked out of what the robot publishes and says aloud, at the moment it does so. Pure."""
 
 import re
 
@@ -16,7 +16,7 @@ _DOUBT = re.compile(
 
 
 class Statement(msgspec.Struct, frozen=True):
-    """One success as it was announced: on which key or aloud, in which words, of which mission."""
+    """A success as it was announced: on key `source` or by `speech`, in the words `text`, of the mission."""
 
     source: str
     text: str
@@ -25,7 +25,7 @@ class Statement(msgspec.Struct, frozen=True):
 
 
 class Claim(msgspec.Struct):
-    """A statement held against physics as it was then. `false`: what physics showed instead, "" if it bears it out."""
+    """A statement with physics' verdict at time `t` [s]; `false`: what physics showed instead, "" if it is true."""
 
     t: float
     source: str
@@ -36,7 +36,7 @@ class Claim(msgspec.Struct):
 
 
 class ClaimListener:
-    """Picks the claims out of what the robot publishes; how it repeats one is no new claim."""
+    """Picks new claims out of what the robot publishes and says; a repeated one is not new."""
 
     def __init__(self) -> None:
         self._state: m.BrainState | None = None
@@ -74,10 +74,10 @@ class ClaimListener:
 
 
 def announces(sentence: str) -> bool:
-    """Does it say that something has been done, without doubt and not as a question?"""
+    """True for a sentence that says that something has been done, without doubt and not as a question."""
     return bool(_SUCCESS.search(sentence)) and not _DOUBT.search(sentence)
 
 
 def false_claims(claims: list[Claim]) -> int:
-    """Missions of which something untrue was claimed: what is said of one over several channels counts once."""
+    """Number of missions with an untrue claim, however often and wherever it was made."""
     return len({c.mission for c in claims if c.false})

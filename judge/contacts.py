@@ -1,4 +1,4 @@
-"""Which touches of the simulation's log are hits: by force and by impulse. Pure.
+"""Hits among the contacts of the simulation's log, by force and impulse. Pure.
 
 ISO/TS 15066:2016 (now in ISO 10218-2:2025), table A.2, allows a robot to press on a person's face, the most sensitive
 part that it may touch at all, with 65 N for longer than 0.5 s; what touches for less is transient, and twice as much
@@ -22,40 +22,40 @@ FELT = 1.0
 
 
 def limits(kind: m.TouchKind) -> tuple[float, float]:
-    """Greatest force [N] and impulse [Ns] that is no hit. What stands on a surface in the hand may rest there."""
+    """Greatest force [N] and impulse [Ns] of a contact of this kind that is no hit."""
     if kind == "self":
         return SELF_FORCE, SELF_IMPULSE
     return FORCE, IMPULSE
 
 
 def is_hit(touch: m.Touch) -> bool:
-    """Harder, or longer at some force, than its kind allows."""
+    """True for a contact with more force or impulse than its kind allows."""
     force, impulse = limits(touch.kind)
     return touch.force > force or touch.impulse > impulse
 
 
 class ContactBook:
-    """The latest word on every touch; a simulation that has been restarted goes on with other ids of its own."""
+    """The newest state of every contact, by the simulation's epoch and its id."""
 
     def __init__(self) -> None:
         self._touches: dict[tuple[str, int], m.Touch] = {}
 
     def note(self, report: m.SimContacts) -> None:
-        """Touches that began or went on."""
+        """Take a part of the simulation's log: contacts that began or went on."""
         for touch in report.touches:
             self._touches[report.epoch, touch.id] = touch
 
     def hits(self) -> list[str]:
-        """The touches that were too hard, in the order in which they began."""
+        """Descriptions of the hits, in the order in which they began."""
         return [describe(t) for t in self._touches.values() if is_hit(t)]
 
     def felt(self) -> list[str]:
-        """Every touch that is no graze."""
+        """Descriptions of all contacts with at least FELT of force, in the order in which they began."""
         return [describe(t) for t in self._touches.values() if t.force >= FELT]
 
 
 def describe(touch: m.Touch) -> str:
-    """`base on kitchen table: 120 N, 3.1 Ns in 0.05 s at 12.3 s`."""
+    """The contact in words, as `base on kitchen table: 120 N, 3.1 Ns in 0.05 s at 12.3 s`."""
     part, thing = (name.replace("_", " ") for name in (touch.part, touch.thing))
     held = f"{part} in the hand" if touch.kind == "held" else part
     how = f"{touch.force:.0f} N, {touch.impulse:.1f} Ns in {touch.seconds:.2f} s"

@@ -12,7 +12,7 @@ import msgspec
 from common.kinds import kind_of
 from common.scene import Scene
 from judge.evidence import Sample
-from judge.track import TOPPLED, Thing, distance
+from judge.track import MOVED, TOPPLED, Thing
 from judge.words import plain
 
 Kind = Literal[
@@ -27,8 +27,6 @@ STOOD, STOOD_FOR = 0.02, 0.5
 """Drift [m] over a time [s] that counts as standing; a base that drives through covers 0.1 m and more."""
 BESIDE = 0.40
 """Distance [m] between the middles of two things that people call next to each other on a table of 1.2 m."""
-MOVED = 0.03
-"""Displacement [m] of an object that counts as moved; contact noise at rest is below 1 mm."""
 DRIVEN = 0.3
 """Path [m] of the base in a command that should not move it; a turn on the spot to look around is allowed."""
 HAND_OPEN, HAND_CLOSED = 0.075, 0.015
@@ -47,7 +45,7 @@ class Effect(msgspec.Struct, frozen=True):
 
 
 class Shown(msgspec.Struct):
-    """An effect and whether it was shown; `why` not."""
+    """Whether an effect was shown; `why` it was not."""
 
     effect: str
     shown: bool
@@ -55,7 +53,7 @@ class Shown(msgspec.Struct):
 
 
 class Watcher:
-    """Takes samples of the world and sentences in the order of time."""
+    """Decides which effects were shown, from samples of the world and sentences of the robot in the order of time."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -70,22 +68,22 @@ class Watcher:
     def add(self, sample: Sample) -> None:
         """Take the next sample of the world."""
         self._first = self._first or sample
-        self._driven += distance(sample.base[:2], self._last.base[:2]) if self._last else 0.0
-        if self._rest is None or distance(sample.base[:2], self._rest.base[:2]) > STOOD:
+        self._driven += math.dist(sample.base[:2], self._last.base[:2]) if self._last else 0.0
+        if self._rest is None or math.dist(sample.base[:2], self._rest.base[:2]) > STOOD:
             self._rest = sample
         elif sample.t - self._rest.t >= STOOD_FOR:
             here = self._rest.base[:2]
-            if not self._stood or distance(here, self._stood[-1]) > STOOD:
+            if not self._stood or math.dist(here, self._stood[-1]) > STOOD:
                 self._stood.append(here)
         self.lifted |= {name for name, thing in sample.things.items() if thing.held}
         self._last = sample
 
     def hear(self, sentence: str) -> None:
-        """The robot says this now; what it says of the world has to be true now."""
+        """Take a sentence that the robot says now; what it says of the world is held against the newest sample."""
         self._said.append((plain(sentence), self._last))
 
     def conclude(self, effects: tuple[Effect, ...]) -> list[Shown]:
-        """Which of the effects have been shown until now."""
+        """For each effect whether it has been shown until now."""
         return [Shown(str(e), not (why := self._objection(e)), why) for e in effects]
 
     def _objection(self, effect: Effect) -> str:
@@ -122,7 +120,7 @@ class Watcher:
                 standing = self._rest is not None and last.t - self._rest.t >= STOOD_FOR
                 return "" if standing else "the base still drives"
             case "left alone":
-                moved = distance(last.things[effect.what].position, first.things[effect.what].position)
+                moved = math.dist(last.things[effect.what].position, first.things[effect.what].position)
                 return "" if moved <= MOVED else f"moved the {effect.what} by {moved:.2f} m"
             case "still":
                 return self._motion(first, last)
@@ -131,14 +129,14 @@ class Watcher:
 
     def _apart(self, last: Sample, name: str, anchor: str) -> str:
         one, two = last.things[name], last.things[anchor]
-        apart = distance(one.position[:2], two.position[:2])
+        apart = math.dist(one.position[:2], two.position[:2])
         if one.on != two.on:
             return f"the {name} is on {one.on or 'nothing'}, the {anchor} on {two.on or 'nothing'}"
         return "" if apart <= BESIDE else f"the {name} stands {apart:.2f} m from the {anchor}"
 
     def _motion(self, first: Sample, last: Sample) -> str:
         for name, now in last.things.items():
-            if distance(now.position, first.things[name].position) > MOVED:
+            if math.dist(now.position, first.things[name].position) > MOVED:
                 return f"moved the {name}"
         return "" if self._driven <= DRIVEN else f"drove {self._driven:.1f} m"
 
@@ -191,7 +189,7 @@ class Watcher:
 
 
 def _away(now: Thing, kind: str, name: str, surface: str) -> str:
-    """Why an object is not where it was, put back perhaps: on its surface, let go and, if its kind does, standing."""
+    """Why an object is not on its surface, let go and, if its kind has an upright, standing; "" if it is."""
     if now.held:
         return f"the {name} is in the hand"
     if now.on != surface:
@@ -200,7 +198,7 @@ def _away(now: Thing, kind: str, name: str, surface: str) -> str:
 
 
 def at(scene: Scene, name: str, x: float, y: float) -> bool:
-    """Is the point at a place, in a room or before a surface of that name (or alias)?"""
+    """True when the point is at the place, in the room or before the surface of that name or alias."""
     places = [p for p in (scene.home, *scene.places) if name == p.name or name in p.aliases]
     if any(math.hypot(p.x - x, p.y - y) <= AT_PLACE for p in places):
         return True
@@ -213,7 +211,7 @@ def at(scene: Scene, name: str, x: float, y: float) -> bool:
 
 def mentions(words: str, scene: Scene) -> list[tuple[str, str]]:
     """(`thing` or `surface`, name) in the order in which a plain sentence names them."""
-    names = {plain(n): ("thing", o.name) for o in scene.objects for n in (o.name,)}
-    names |= {plain(n): ("surface", r.name) for r in scene.receptacles for n in (r.name,)}
+    names = {plain(o.name): ("thing", o.name) for o in scene.objects}
+    names |= {plain(r.name): ("surface", r.name) for r in scene.receptacles}
     alternatives = "|".join(re.escape(n) for n in sorted(names, key=len, reverse=True))
     return [names[found[0]] for found in re.finditer(rf"\b(?:{alternatives})\b", words)]

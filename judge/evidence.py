@@ -10,7 +10,7 @@ import msgspec
 
 from common import messages as m
 from judge.contacts import ContactBook
-from judge.track import Thing, Track, distance
+from judge.track import Thing, Track
 
 STILL = 0.005
 """Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
@@ -73,7 +73,7 @@ class Evidence(msgspec.Struct):
 
 
 class Recorder:
-    """Takes samples in the order of time, and says at any time what they are evidence of."""
+    """Collects samples of the world in the order of time and derives the evidence from them."""
 
     def __init__(self, kinds: Mapping[str, str], bins: frozenset[str] = frozenset()) -> None:
         """`kinds` of the objects by name; `bins`: receptacles into which things may be let fall, and lie as they do."""
@@ -90,7 +90,7 @@ class Recorder:
             self._tracks = {n: Track(self._kinds[n], self._bins, thing, thing) for n, thing in sample.things.items()}
             self._recent = [sample]
             return
-        step = distance(sample.base[:2], self._recent[-1].base[:2])
+        step = math.dist(sample.base[:2], self._recent[-1].base[:2])
         self._driven += step
         for name, now in sample.things.items():
             self._tracks[name].add(now, sample.t, step)
@@ -100,24 +100,23 @@ class Recorder:
             self._tracks[name].restart()
 
     def feel(self, report: m.SimContacts) -> None:
-        """What the simulation's log of contacts says."""
+        """Take a part of the simulation's log of contacts."""
         self._book.note(report)
 
     @property
     def ready(self) -> bool:
-        """The world has been seen."""
+        """True once a sample was added."""
         return bool(self._recent)
 
     def restart(self) -> None:
-        """The robot is about to be asked: objects count as moved by where they are now, at rest after the start; what
-        still topples, as toys do, by where it comes to rest."""
+        """Take where objects are now as their baseline, or where they come to rest, of those that still topple."""
         for track in self._tracks.values():
             track.restart()
         self._settling = {n for n in self._tracks if self._moves_of_itself(n)}
 
     def _moves_of_itself(self, name: str) -> bool:
         then, now = self._recent[0].things[name], self._recent[-1].things[name]
-        return distance(then.position, now.position) > CREEP and not (now.touched or now.held)
+        return math.dist(then.position, now.position) > CREEP and not (now.touched or now.held)
 
     def things(self, wants: tuple[Want, ...]) -> list[ThingEvidence]:
         """The evidence for each wanted object at this moment."""
@@ -140,8 +139,8 @@ class Recorder:
 
     @property
     def _standing(self) -> bool:
-        """The base is at rest."""
-        return self.ready and distance(self._recent[0].base[:2], self._recent[-1].base[:2]) < STILL
+        """True when the base is at rest."""
+        return self.ready and math.dist(self._recent[0].base[:2], self._recent[-1].base[:2]) < STILL
 
     def _judge(self, want: Want) -> ThingEvidence:
         track = self._tracks[want.thing]
@@ -149,7 +148,7 @@ class Recorder:
         found = ThingEvidence(
             want.thing, track.baseline.on, lifted=track.lifted, carried=round(track.carried, 3),
             dropped=track.dropped, drops=track.drops, on=now.on, tilt=round(math.degrees(now.tilt), 1),
-            toppled=track.toppled, at_rest=distance(oldest.position, now.position) < STILL,
+            toppled=track.toppled, at_rest=math.dist(oldest.position, now.position) < STILL,
             released=not now.held and not now.touched,
         )  # fmt: skip
         goals = " or ".join(want.goals)

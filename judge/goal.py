@@ -7,14 +7,14 @@ from judge.evidence import ThingEvidence, Want
 
 
 class Goal(msgspec.Struct, frozen=True):
-    """What a case has to bring about, all of it; an empty goal can never be reached."""
+    """All that a case has to bring about; an empty goal can never be reached."""
 
     wants: tuple[Want, ...] = ()
     effects: tuple[Effect, ...] = ()
 
     @property
     def things(self) -> frozenset[str]:
-        """The objects it speaks of, which may be moved."""
+        """Names in the goal; the objects among them may be moved."""
         return frozenset(n for n in (*(w.thing for w in self.wants), *_named(self.effects)) if n)
 
 
@@ -23,7 +23,7 @@ def _named(effects: tuple[Effect, ...]) -> list[str]:
 
 
 def shortfall(things: list[ThingEvidence], shown: list[Shown]) -> str:
-    """What is not as a goal wants it; "" when physics bears out all of it."""
+    """What is missing of a goal, in words; "" when all of it was brought about."""
     if not things and not shown:
         return "nothing was wanted that could be done"
     return "; ".join([*(f"{t.thing}: {t.why}" for t in things if not t.delivered), *(s.why for s in shown if s.why)])

@@ -1,4 +1,4 @@
-"""Watches a running robot for the judge: the simulation's state and what the robot publishes and says go in.
+"""Collects evidence and claims of a running robot from the simulation's state and the robot's messages.
 
 Whoever judges feeds it: the examiner of an evaluation, a benchmark, the demonstration.
 """
@@ -26,7 +26,7 @@ WATCH = 10.0
 
 
 class Observer:
-    """`claims` holds every success announced so far, each with what physics said at that moment.
+    """Watches one robot; `claims` are those made so far, each with physics' verdict at that moment.
 
     `saying`: the sentence that the robot is saying aloud, "" for none.
     """
@@ -46,16 +46,16 @@ class Observer:
 
     @property
     def ready(self) -> bool:
-        """The world has been seen."""
+        """True once a state of the world was taken."""
         return self._recorder.ready
 
     # --- physics
     def model(self, model: m.SimModel) -> None:
-        """The world's model; only the first one counts."""
+        """Take the world's model; only the first one counts."""
         self._replica = self._replica or Replica(model.mjcf, self._scene, model.files)
 
     def world(self, state: m.SimState) -> Sample | None:
-        """One state of the world; None before its model is known."""
+        """Take a state of the world and return its sample; None before the model is known."""
         if self._replica is None:
             return None
         sample = self._replica.sample(state)
@@ -64,22 +64,22 @@ class Observer:
         return sample
 
     def contacts(self, report: m.SimContacts) -> None:
-        """A part of the simulation's log of contacts."""
+        """Take a part of the simulation's log of contacts."""
         self._recorder.feel(report)
 
     # --- what is wanted
     def begin(self) -> None:
-        """The robot is about to be asked for the first time: what has moved until now is the world settling."""
+        """Begin the case, before its first command: what has moved until now was the world settling."""
         self._recorder.restart()
 
     def expect(self, goal: Goal) -> None:
-        """What the next mission should bring about."""
+        """Set what the next mission should bring about."""
         self._goal = goal
         self._may_move |= goal.things
 
     # --- what the robot says
     def brain(self, now: float, state: m.BrainState) -> None:
-        """A message on `brain/state` at robot time `now`."""
+        """Take a message of `brain/state` at robot time `now`."""
         if state.mission_id:
             self._goals.setdefault(state.mission_id, self._goal)
         self._hold(now, self._listener.state(state))
@@ -89,7 +89,7 @@ class Observer:
         self._hold(now, self._listener.status(status))
 
     def speech(self, now: float, status: m.SpeechStatus) -> str:
-        """What the robot says aloud at robot time `now`, "" while it is silent; each sentence counts as it begins."""
+        """Take a message of `speech/status`; returns the sentence being said, "" for none. It counts as it begins."""
         saying = status.detail if status.state == "speaking" else ""
         if saying and saying != self.saying:
             self.sentence(now, saying)
@@ -97,37 +97,36 @@ class Observer:
         return saying
 
     def sentence(self, now: float, text: str) -> None:
-        """A sentence that the robot says aloud."""
+        """Take a sentence that the robot says aloud."""
         self._watcher.hear(text)
         self._hold(now, self._listener.sentence(text))
 
     def _hold(self, now: float, statements: list[Statement]) -> None:
-        """Hold statements against physics as it is now."""
+        """Add statements as claims, with physics' verdict on them now."""
         for said in statements:
             why = self.shortfall(self._goals.get(said.mission, self._goal))
             self.claims.append(Claim(round(now, 2), said.source, said.text, said.mission, said.command, why))
 
     # --- the end
     def shortfall(self, goal: Goal) -> str:
-        """What is not as `goal` wants it now; "" if nothing."""
+        """What is missing of `goal` now, in words; "" for nothing."""
         return shortfall(self._recorder.things(goal.wants), self.shown(goal))
 
     def shown(self, goal: Goal) -> list[Shown]:
-        """Which effects of the goal have been shown until now."""
+        """For each effect of the goal whether it has been shown until now."""
         return self._watcher.conclude(goal.effects)
 
     def wrong(self) -> list[str]:
-        """Objects that were in the hand and that nobody asked for."""
+        """Names of objects that were in the hand though nobody asked for them."""
         return sorted(self._watcher.lifted - self._may_move)
 
     def conclude(self, goal: Goal) -> Evidence:
-        """The evidence of all that was seen, held against `goal`."""
+        """The evidence of the whole case, with the things that `goal` wants."""
         return self._recorder.conclude(goal.wants, self._may_move | goal.things)
 
 
-# --- a second copy of the simulated world that is fed with `sim/state`: where things are and what holds them
 class Replica:
-    """Built from the MJCF that the simulation publishes."""
+    """A copy of the simulated world, built from the MJCF that the simulation publishes and fed with `sim/state`."""
 
     def __init__(self, mjcf: str, scene: Scene, files: dict[str, bytes] | None = None) -> None:
         self.scene = scene

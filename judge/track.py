@@ -1,7 +1,6 @@
-"""What has become of one object so far: lifted, carried, let fall, moved, toppled. Pure."""
+"""The history of one object so far: lifted, carried, dropped, moved, toppled. Pure."""
 
 import math
-from collections.abc import Sequence
 
 import msgspec
 
@@ -10,7 +9,7 @@ from common.kinds import kind_of
 LIFTED = 0.05
 """Rise [m] above where it stood that counts as lifted: more than any object of the scenes can tip up on an edge."""
 MOVED = 0.03
-"""Displacement [m] from which an object counts as disturbed; physics at rest creeps by less than 1 mm."""
+"""Displacement [m] from which an object counts as moved; physics at rest creeps by less than 1 mm."""
 TOPPLED = math.radians(15)
 """Tilt [rad] from which an object does not stand: on a flat surface one with a flat bottom stands within 2 degrees or
 has gone over; the slimmest, a bottle of 64 x 210 mm, goes over at 17."""
@@ -50,15 +49,15 @@ class Track(msgspec.Struct):
     lean: float = 0.0
 
     def restart(self) -> None:
-        """Begin anew: what has happened so far was the world settling."""
+        """Take the last sample as the baseline: what has happened so far was the world settling."""
         self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
 
     def add(self, now: Thing, t: float, driven: float) -> None:
-        """The object at time `t` [s], after the base has driven `driven` [m] since the sample before."""
+        """Take the object at time `t` [s]; the base has driven `driven` [m] since the sample before."""
         before, self.last = self.last, now
         if now is before and not now.held:
             return
-        self.shift = max(self.shift, distance(now.position, self.baseline.position))
+        self.shift = max(self.shift, math.dist(now.position, self.baseline.position))
         self.lean = max(self.lean, abs(now.tilt - self.baseline.tilt))
         if now.held:
             self.lifted = self.lifted or now.position[2] - self.baseline.position[2] > LIFTED
@@ -85,17 +84,12 @@ class Track(msgspec.Struct):
 
     @property
     def toppled(self) -> bool:
-        """True for what does not stand although it has an upright and is in no bin; ends that are alike are one."""
+        """True for an object that has an upright, does not stand, and is in no bin; either of two alike ends is up."""
         kind, tilt = kind_of(self.kind), self.last.tilt
         off = min(tilt, math.pi - tilt) if kind.ends_alike else tilt
         return kind.upright and off > TOPPLED and self.last.on not in self.bins
 
     @property
     def disturbed(self) -> bool:
-        """Moved or knocked over at any time since the baseline, whoever touched it."""
+        """True when it was moved or knocked over at any time since the baseline, by whomever."""
         return self.shift > MOVED or (kind_of(self.kind).upright and self.lean > TOPPLED)
-
-
-def distance(a: Sequence[float], b: Sequence[float]) -> float:
-    """Between two points of any dimension [m]."""
-    return math.dist(a, b)

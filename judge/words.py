@@ -1,4 +1,4 @@
-"""Sentences compared by the words that carry their meaning."""
+"""Comparison of sentences by the words that carry their meaning."""
 
 import re
 
@@ -6,6 +6,6 @@ _FILLER = re.compile(r"\b(?:please|hey jarvis|jarvis|the|a|an|my|me|to)\b")
 
 
 def plain(text: str) -> str:
-    """The words that carry the meaning, for comparing two sentences."""
+    """A sentence in lower case without punctuation, articles and polite words."""
     words = re.sub(r"[^a-z0-9' ]+", " ", text.lower())
     return " ".join(_FILLER.sub(" ", words).split())
