@@ -71,7 +71,7 @@ def poses_for(
 
 
 def delivers_at_home(floor_plan: FloorPlan) -> bool:
-    """True when the robot puts down at its home what it brings: there is no surface for it, or it is before it."""
+    """True when the robot delivers from its home pose: there is no delivery surface, or its home is before it."""
     receptacle, home = floor_plan.receptacle(floor_plan.delivery), floor_plan.home
     if receptacle is None:
         return True

@@ -1,4 +1,4 @@
-"""The cells of a map as a message carries them: unpacked, and no more of them than there can be. Pure."""
+"""Decompression of the cells of a map in a message, limited to their declared number. Pure."""
 
 import zlib
 

@@ -1,4 +1,4 @@
-"""What a demonstration's frames are made of: written by the recorder, and seen and answered by policies."""
+"""State, action and pictures of a demonstration, the same for the recorder and for the policies that learn from it."""
 
 from collections.abc import Callable, Sequence
 
@@ -24,7 +24,7 @@ class PictureTurns:
         self._wanted, self._asked = "", float("-inf")
 
     def came(self, picture: m.Rgbd) -> None:
-        """A picture is there; if it is the one asked for, the next camera has its turn."""
+        """Note that a picture has come; if it is the one asked for, it is the next camera's turn."""
         if picture.id == self._wanted:
             self._wanted = ""
             self._cameras.append(self._cameras.pop(0))

@@ -1,4 +1,4 @@
-"""The cells of a floor plan, and how far each of them is from what stands there. Pure."""
+"""A grid over a floor plan, and the distance of each cell to the nearest obstacle of the plan. Pure."""
 
 import math
 

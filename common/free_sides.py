@@ -1,4 +1,4 @@
-"""The sides of a surface before which the robot can stand, by the floor that it gets to. Pure."""
+"""The sides of a surface before which the robot can stand, computed from the floor that it can reach. Pure."""
 
 import math
 from collections.abc import Callable
@@ -23,7 +23,7 @@ BACK = (0.02, 0.08)
 
 
 def reached(distance: Array, resolution: float, start: tuple[int, int] | None = None) -> Mask:
-    """The cells on which the robot's middle may stay, by their `distance` [m] to what stands there: of the piece of
+    """Cells at which the robot can be, from each cell's `distance` [m] to the nearest obstacle: those of the piece of
     floor nearest to the cell `start`, without it of the largest. The way there may be as narrow as the robot."""
     passed = distance >= FOOTPRINT - resolution / 2
     labels, count = ndimage.label(passed, np.ones((3, 3)))
@@ -59,7 +59,7 @@ def free_sides(outline: Rectangle, free: Callable[[Array], Mask], rim: float = 0
 
 
 def with_sides(plan: P) -> P:
-    """The plan, each surface whose `approach` it leaves out with the sides that are free by the plan itself."""
+    """The plan; surfaces without `approach` get the sides that are free of walls and furniture."""
     if all(r.approach for r in plan.receptacles):
         return plan
     cells = Cells(plan, CELL)

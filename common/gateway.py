@@ -1,4 +1,4 @@
-"""What gateways to other tools have in common: what these may ask of the robot, and when."""
+"""What gateways to other tools share: checks of what these ask of the robot, and when something periodic is due."""
 
 from typing import Any, TypeVar
 
@@ -18,15 +18,15 @@ LONGEST = 200
 
 
 def refusal(state: m.BrainState | None) -> str:
-    """Why others may not move the robot now, "" when they may."""
+    """Why clients other than the brain may not move the robot now, in words; "" when they may."""
     suspended = state is not None and state.state == "IDLE" and state.mission_id
     if state is not None and (state.state not in READY or suspended):
         return f"a mission is under way ({state.state}); cancel it first"
     return ""
 
 
-def sound(io: Io, message: M) -> M:
-    """The message with an id of its own where it has none.
+def checked(io: Io, message: M) -> M:
+    """A message of a client, checked, with a new id where it has an empty one.
 
     Raises:
         ValueError: a number that nothing can act on.
@@ -39,12 +39,12 @@ def sound(io: Io, message: M) -> M:
 
 
 def due(rate: float, since: float) -> bool:
-    """True when what is done at `rate` [Hz] and was done last `since` seconds ago is to be done; at 0 it never is."""
+    """True when an action repeated at `rate` [Hz], last done `since` seconds ago, is due; never at rate 0."""
     return rate > 0 and since >= 1 / rate
 
 
 def standing_pose(stamped: Any) -> m.NavGoal:
-    """A goal from what has the fields of a geometry_msgs/PoseStamped.
+    """A navigation goal from an object with the fields of a geometry_msgs/PoseStamped.
 
     Raises:
         ValueError: in another frame than the map, or not on the floor.
@@ -59,5 +59,5 @@ def standing_pose(stamped: Any) -> m.NavGoal:
 
 
 def stop(io: Io, reason: str) -> m.RobotStop:
-    """The brake; whatever the reason says, it is a stop."""
+    """A stop with this reason, shortened, or with `stop` in place of an empty one."""
     return m.RobotStop(reason=reason[:LONGEST] or "stop", source=io.name)

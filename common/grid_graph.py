@@ -1,4 +1,4 @@
-"""The cells of a floor plan as a graph: for the shortest ways on it. Pure."""
+"""Graph of the free cells of a grid, for shortest paths. Pure."""
 
 import math
 

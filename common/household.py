@@ -41,13 +41,13 @@ class Household(FloorPlan, frozen=True, kw_only=True):
 
 
 def mapped(plan: FloorPlan, words: Words | None = None) -> Household:
-    """The household of someone who was told the floor plan and words, and of no thing that is there."""
+    """A household with this floor plan and these words, in which no object is known."""
     shared = {name: getattr(plan, name) for name in FloorPlan.__struct_fields__}
     return Household(**shared, words=words or Words())
 
 
 def told(world: Scene, words: Words | None = None) -> Household:
-    """The household of someone who was told all about a world: its objects are known things."""
+    """A household of which all is known as it is in this world: the world's objects are its things."""
     things = tuple(Thing(**{n: getattr(o, n) for n in Thing.__struct_fields__}) for o in world.objects)
     return msgspec.structs.replace(mapped(world, words), things=things)
 

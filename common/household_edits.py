@@ -1,4 +1,4 @@
-"""A household with what people have told of it since: names of its parts, and where things belong. Pure."""
+"""A household with the edits that people have told: names of its parts, and where things belong. Pure."""
 
 import math
 from typing import TypeVar

@@ -1,4 +1,4 @@
-"""Sessions of onnxruntime as the processes of a robot need them: one thread, and no memory kept."""
+"""Sessions of onnxruntime with one thread and without memory arenas, as the robot's processes need them."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Pictures for watchers: each camera is asked while somebody looks at its topic, and not otherwise."""
+"""Requests of camera pictures for viewers, while somebody subscribes to them."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ from common.topic import Topic
 
 
 class PictureRequests:
-    """Asks for pictures of `width` x `height` at `rate` [Hz]; 0: for none."""
+    """Requests pictures of `width` x `height` pixels at `rate` [Hz]; none at 0."""
 
     def __init__(self, io: Io, rate: float, width: int, height: int) -> None:
         self._io, self.rate, self._width, self._height = io, rate, width, height
         self._asked: dict[str, float] = {}
 
     def step(self, now: float, watched: set[Topic[Any]]) -> None:
-        """Ask each camera whose topic is watched, when it is due."""
+        """Request a picture of each camera whose topic is in `watched`, when it is due."""
         for name, topic in topics.PICTURES.items():
             if topic not in watched or not due(self.rate, now - self._asked.get(name, float("-inf"))):
                 continue

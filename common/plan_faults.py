@@ -1,4 +1,4 @@
-"""What of a floor plan cannot be by its measures, in words. Pure."""
+"""Check of a floor plan's measures: sizes, heights and extents that cannot be. Pure."""
 
 import math
 from collections.abc import Iterator

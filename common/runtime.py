@@ -55,7 +55,7 @@ def main(kind: ServiceClass) -> None:
 
 
 class StartError(ValueError):
-    """A service cannot start as configured; the message says what to change."""
+    """The error of a service that cannot start as configured; the message says what to change."""
 
 
 def _run(process: Process, clock: SimClock | WallClock) -> None:

@@ -1,4 +1,4 @@
-"""What an object rests on, by its exact pose and the floor plan's geometry: for the simulation and its judges."""
+"""The support of an object by its exact pose and the floor plan, for the simulation and its judges."""
 
 from common.floor_plan import FloorPlan
 

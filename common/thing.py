@@ -1,4 +1,4 @@
-"""A thing as people tell of it: what it is called, its kind, its colour and its size."""
+"""The description of an object by people: name, kind, colour and size."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What "red mugs go on the shelf" is a rule about: kinds, colours and names in a person's words. Pure."""
+"""Tidying rules from a person's words, as "red mugs go on the shelf": what they are about. Pure."""
 
 from collections.abc import Sequence
 
@@ -15,13 +15,13 @@ ONES = frozenset({"the", "this", "that", "it", "them", "these", "those", "a", "a
 
 
 def is_generic(things: Sequence[str]) -> bool:
-    """Do the words mean all of their kind (`mugs`, `my keys`), and not those that are there (`the mugs`)?"""
+    """True for words that mean all of their kind (`mugs`, `my keys`), and not certain ones (`the mugs`)."""
     last = things[-1] if things else ""
     return bool(last) and things[0] not in ONES and last.endswith("s") and not last.endswith("ss")
 
 
 def rule_about(things: str, to: str, words: Words) -> TidyRule:
-    """The rule that `things` go to the receptacle `to`; what no word of the household names goes by its name."""
+    """The rule that `things` go to the receptacle `to`, by kind and colour where the words say so, else by name."""
     rest = [w for w in normalise(things).split() if w not in _ALL]
     colours: list[str] = []
     while len(rest) > 1 and (colour := words.colour(rest[0])):

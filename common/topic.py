@@ -1,4 +1,4 @@
-"""A row of the table of topics: a key with its payload, writers, readers and delivery; and the kinds of rows."""
+"""Rows of the table of topics: a key with its payload, writers, readers and delivery; and the four kinds of rows."""
 
 from typing import Any, Generic, Literal, TypeVar
 
@@ -60,12 +60,12 @@ class Query(msgspec.Struct, frozen=True):
 
 # --- kinds of rows; `by` and `to` name services, separated by blanks
 def goal(key: str, type: type[M], *, by: str, to: str, text: str = "", latched: bool = True) -> Topic[M]:
-    """What somebody is to do: in order, none lost, none from before its reader's start."""
+    """A topic of commands: delivered in order, none lost, none from before its reader's start."""
     return row(key, type, by, to, text=text, latched=latched, command=True)
 
 
 def event(key: str, type: type[M], *, by: str, to: str = "", text: str = "") -> Topic[M]:
-    """What has happened or how something stands: in order, none lost."""
+    """A topic of events or states: delivered in order, none lost."""
     return row(key, type, by, to, text=text, latched=True)
 
 
@@ -80,12 +80,12 @@ def stream(
     latched: bool = False,
     bulk: bool = False,
 ) -> Topic[M]:
-    """Samples of which only the newest counts."""
+    """A topic of samples of which only the newest counts."""
     return row(key, type, by, to, rate=rate, binary=binary, latched=latched, bulk=bulk, keep="latest")
 
 
 def sound(key: str, *, by: str, to: str) -> Topic[m.AudioChunk]:
-    """Samples of which every one counts."""
+    """A topic of sound, of which every chunk counts."""
     return row(key, m.AudioChunk, by, to, rate=10.0, binary=True, bulk=True)
 
 

@@ -36,12 +36,12 @@ LEAST = 0.15
 
 
 def decayed(s: Sighting, now: float) -> float:
-    """The visits of a sighting as they count now."""
+    """The number of visits of a sighting, decayed with their age."""
     return float(s.weight * 0.5 ** (max(0.0, now - s.last) / HALF_LIFE))
 
 
 def of_thing(phrase: str, sightings: Sequence[Sighting]) -> list[Sighting]:
-    """The sightings of the thing that a phrase names: by all of its words, as they stand or in the singular."""
+    """The sightings of the thing that a phrase names: those with all of its words, as they stand or in the singular."""
     wanted = set(normalise(phrase).split())
     found = [s for s in sightings if wanted and wanted <= {*s.thing.split(), s.kind, s.colour}]
     if not found and phrase.endswith("s"):
@@ -60,7 +60,7 @@ def kind_of_phrase(phrase: str, household: Household, sightings: Sequence[Sighti
 
 
 def shares(phrase: str, household: Household, sightings: Sequence[Sighting], now: float) -> dict[str, float]:
-    """How likely the thing is on each surface, by its name [1]; the shares of all surfaces add up to 1."""
+    """Probability that the thing is on each surface, by the surface's name; they add up to 1."""
     surfaces = [r for r in household.receptacles if r.kind != "bin"]
     if not surfaces:
         return {}
@@ -82,13 +82,13 @@ def shares(phrase: str, household: Household, sightings: Sequence[Sighting], now
 def likelihood(
     phrase: str, household: Household, sightings: Sequence[Sighting], now: float, viewpoints: Viewpoints
 ) -> Array:
-    """How likely the thing is at each point (p,) of a search, the mean of all being 1."""
+    """Likelihood (p,) of the thing at each point of a search, of mean 1."""
     found = shares(phrase, household, sightings, now)
     return spread(found, household, viewpoints)
 
 
 def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoints) -> Array:
-    """Shares of surfaces as a likelihood of each of a search's points (p,), at least LEAST, the mean of them near 1.
+    """Likelihood (p,) of each point of a search from the probability of its surface: at least LEAST, of mean about 1.
 
     On sofas and beds, which have no share, it is LEAST.
     """

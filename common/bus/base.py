@@ -32,7 +32,7 @@ R = TypeVar("R")
 
 
 class Setting(TypedDict, total=False):
-    """What a service is told of the home, whose time it follows, whose seed it draws from.
+    """What an `Io` is made with: the household, the clock, and the seed of its randomness.
 
     Unless told otherwise: lockstep on a clock of its own, seed 0, no knowledge of the world, errors alone in the log.
     """
@@ -46,7 +46,7 @@ class Setting(TypedDict, total=False):
 
 
 class IoBase:
-    """Subclasses add `_send`, `serve`, `peer`."""
+    """The part of `Io` that is the same on every bus; subclasses add `_send`, `serve` and `peer`."""
 
     state_dir: Path | None = None
     outside: Outside | None = None
@@ -82,7 +82,7 @@ class IoBase:
 
     @property
     def household(self) -> Household:
-        """What the robot is told of its home, with what people have told since where that is read."""
+        """What the robot was told of its home; for services that read the edits, with what people have told since."""
         box = self._boxes.get(topics.HOUSEHOLD_EDITS.key)
         edits = self.latest(topics.HOUSEHOLD_EDITS) if box is not None else None
         if edits is not None and edits is not self._edits:
@@ -95,7 +95,7 @@ class IoBase:
         self._household = edited(loaded, m.HouseholdEdits())
 
     def amend(self, edits: m.HouseholdEdits) -> None:
-        """Take what people have told into account, where this service publishes it."""
+        """Apply edits to `household`, for the service that publishes them."""
         self._edits, self._household = edits, edited(self.loaded, edits)
 
     @property
@@ -192,7 +192,7 @@ class IoBase:
         return found
 
     def beside(self, robot: str) -> "IoBase":
-        """This service for another robot."""
+        """An `Io` of this service in the namespace of another robot."""
         raise NotImplementedError
 
     def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:

@@ -71,7 +71,7 @@ class Publisher:
 
 
 def fetch(opened: zenoh.Session, key: str, payload: bytes = b"", timeout: float = 2.0) -> dict[str, bytes]:
-    """What answers a `get` on a key expression: key -> payload. Empty: nobody answered."""
+    """The answers to a `get` on a key expression, as key -> payload; empty when nobody answered."""
     answers: dict[str, bytes] = {}
     for reply in opened.get(key, payload=payload or None, timeout=timeout):
         if reply.ok is not None:
@@ -80,7 +80,7 @@ def fetch(opened: zenoh.Session, key: str, payload: bytes = b"", timeout: float 
 
 
 def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
-    """One message, once, as any client sends it."""
+    """Publish one message, as any client does."""
     opened.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
 
 

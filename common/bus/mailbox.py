@@ -35,7 +35,7 @@ class Mailbox(Generic[M]):
         self._inbox.append((stamp, payload))
 
     def open(self, tick: int | None, now: float) -> int:
-        """Make visible what may be seen by the step of `tick` (None: everything); how many of it had no stamp."""
+        """Make visible what the step of `tick` may see (None: everything); returns how many payloads had no stamp."""
         inbox, unstamped = self._inbox, 0
         latest_only = self.topic.keep == "latest"
         while inbox and (tick is None or inbox[0][0] < tick):

@@ -1,4 +1,4 @@
-"""Small files that are whole at any moment."""
+"""Atomic replacement of small files: a reader, or a crash, finds the old content or the new one."""
 
 import contextlib
 import os
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def replace(path: Path, data: bytes, durable: bool = False) -> str:
-    """Put a new content in the place of the old in one step; the reason when that was not possible.
+    """Replace a file's content in one step; returns the reason when that was not possible, else "".
 
     `durable`: it is on the disk when this returns, so that a power cut does not take it back.
     """
@@ -28,7 +28,7 @@ def replace(path: Path, data: bytes, durable: bool = False) -> str:
 
 
 def _sync_folder(folder: Path) -> None:
-    """The file's name is on the disk as well."""
+    """Have the kernel write the folder's entries to the disk."""
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

@@ -1,4 +1,4 @@
-"""What is wrong with an entry of a file, in words: which one by its name, and what may stand there. Pure."""
+"""Error messages for entries of configuration files: the entry by its name, and the choices there are. Pure."""
 
 import re
 from typing import Any
@@ -10,7 +10,7 @@ _STEP = re.compile(r"\.(\w+)|\[(\d+|\.\.\.)\]")
 
 
 def in_words(error: msgspec.ValidationError, raw: Any, kind: Any) -> str:
-    """A sentence of msgspec's about `raw`, which is no `kind`, with the entry's name and the choices there are."""
+    """msgspec's message about `raw`, which is no valid `kind`, with the entry's name and the choices there are."""
     text = str(error)
     match = _PATH.search(text)
     where: list[str] = []

@@ -48,7 +48,7 @@ class GridMap(NamedTuple):
 
 
 def write_map(directory: Path, grid: GridMap, name: str = "map") -> Path:
-    """`NAME.pgm` and `NAME.yaml` in the directory; the second file's path.
+    """Write the grid as `NAME.pgm` and `NAME.yaml` into the directory; returns the second file's path.
 
     Raises:
         MapError: they cannot be written.
@@ -70,7 +70,7 @@ def write_map(directory: Path, grid: GridMap, name: str = "map") -> Path:
 
 
 def write_home(directory: Path, grid: GridMap, household: FloorPlan) -> None:
-    """All that says what a home is like: map, surfaces, household, and a picture for people.
+    """Write all files of a home: map, surfaces, household, and a picture for people.
 
     Raises:
         MapError, OSError: they cannot be written.

@@ -1,4 +1,4 @@
-"""A value that a service keeps on disk: whole at any moment, there again after a kill or a power cut."""
+"""A value that a service keeps on disk, atomically, so that it survives a kill or a power cut."""
 
 import contextlib
 import re
@@ -40,7 +40,7 @@ class StoredFile(Generic[T]):
             return None
 
     def save(self, value: T) -> bool:
-        """True when the value is kept; a `durable` file is on the disk then."""
+        """Save the value; True when that was possible. A `durable` file is on the disk itself then."""
         if self._path is None:
             return True
         if self._folder:
@@ -53,5 +53,5 @@ class StoredFile(Generic[T]):
 
 
 def home_file(folder: Path | None, what: str, home: str) -> Path | None:
-    """`what` of one home: a robot that is moved elsewhere keeps what it knows of both."""
+    """Path of the file `what` of one home, named by the home, so that a robot used in two homes keeps both."""
     return folder / f"{what}-{re.sub(r'[^A-Za-z0-9]+', '-', home).strip('-') or 'home'}.json" if folder else None

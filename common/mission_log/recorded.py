@@ -1,4 +1,4 @@
-"""The missions in a recording, told as the brain's journal tells them: from the topics alone."""
+"""The missions of a recording, as records like those of the brain's journal, from the topics alone."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -22,7 +22,7 @@ ASKED = 5.0
 
 
 def decoded(row: Row) -> m.Message | None:
-    """The message of a row, None when it is none."""
+    """The decoded message of a row, None when it cannot be decoded."""
     topic = topics.BY_KEY.get(row.key)
     if topic is None or row.junk:
         return None

@@ -17,7 +17,7 @@ OTHER_STATE = "#dee2e6"
 
 
 def under_way(state: m.BrainState | None) -> bool:
-    """Whether a mission is being worked on; a resumed one has the name of the one that was cancelled."""
+    """True while a mission is being worked on."""
     if state is None or not state.mission_id:
         return False
     ended = state.state in ("COMPLETED", "ERROR")
@@ -25,7 +25,7 @@ def under_way(state: m.BrainState | None) -> bool:
 
 
 def limb_words(status: m.NavigationFeedback | m.ManipulationStatus) -> str:
-    """What base or arm is doing, or how it ended and why."""
+    """The status of base or arm in words: what it is doing, or how it ended and why."""
     doing = f"{status.status} {getattr(status, 'phase', '')}".rstrip()
     why = f"{status.code} {status.detail}".strip()
     return f"{doing}: {why}" if why else doing

@@ -52,7 +52,7 @@ def page(record: dict[str, Any], frames: Iterable[tuple[float, str, str]] = ()) 
 
 
 def chart(record: dict[str, Any]) -> dict[str, Any]:
-    """Where everything of the timeline is drawn [px]: bands of states, lanes of marks, ticks of the axis."""
+    """Positions [px] of everything on the timeline: bands of states, lanes of marks, ticks of the axis."""
     entries, began = record["entries"], float(record["started"])
     last = max((float(e["t"]) for e in entries), default=began)
     ended = max(float(record["ended"] if record["outcome"] else record.get("until", last)), last)

@@ -1,4 +1,4 @@
-"""What was said in both directions, for those who watch the robot."""
+"""Transcript of the dialogue with the robot, for viewers."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Line:
 
 
 class Transcript:
-    """Speech in both directions, newest last."""
+    """The last lines of the dialogue, newest last."""
 
     def __init__(self) -> None:
         self.lines: deque[Line] = deque(maxlen=LINES)

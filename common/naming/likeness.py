@@ -1,4 +1,4 @@
-"""How well words for colours and kinds fit an object by its looks: from plainly to not at all. Pure."""
+"""Likeness: how well words for colours and kinds fit an object by its looks, from 0 to 1. Pure."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

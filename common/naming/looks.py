@@ -1,4 +1,4 @@
-"""What a kind looks like: wide ranges of its measures, and how likely a measured object is of each kind. Pure.
+"""Kinds by their looks: ranges of measures for each, and the probability of each kind for a measured object. Pure.
 
 The ranges are those of household goods, not of one home: what lies within them is equally likely, what lies outside
 less and less. Several kinds may be about as likely; whoever grounds words decides among them by the words.
@@ -89,7 +89,7 @@ def _within(value: float, usual: Range, deviation: float) -> float:
 
 
 def likely(looks: Mapping[str, Look], m: Measures, colours: Collection[str]) -> dict[str, float]:
-    """The kinds that an object may be, the likeliest first, with shares that add up to 1; empty if it is none.
+    """Probability of each kind that a measured object may be, the likeliest first; empty if it fits none.
 
     `OTHER` is the first where its extents are none that the likeliest kind has.
     """

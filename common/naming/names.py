@@ -91,7 +91,7 @@ def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
 
 
 def is_ball(kind: str) -> bool:
-    """Balls and fruit are mistaken for each other, and for nothing that stands on a foot."""
+    """True for round kinds, balls and fruit, which are taken for each other and for nothing that stands on a foot."""
     return kind_of(kind).shape == "sphere"
 
 

@@ -1,4 +1,4 @@
-"""Names of rooms and surfaces: which words name them, and what those are called that nobody has named. Pure."""
+"""Names of rooms and surfaces: the words that name them, and names for those that nobody has named. Pure."""
 
 import re
 from collections import Counter
@@ -46,7 +46,7 @@ def kind_named(name: str) -> PartKind | None:
 
 
 def is_for_people(name: str) -> bool:
-    """Does a surface's name, as `bed 2 in the bedroom`, say that people lie or sit on it?"""
+    """True when a surface's name says that people lie or sit on it, as `bed 2 in the bedroom`."""
     words = [word for word in name.split(" in ")[0].split() if not word.isdigit()]
     return bool(words) and words[-1] in FOR_PEOPLE
 
@@ -83,7 +83,7 @@ def _named_surfaces(plan: FloorPlan) -> tuple[Receptacle, ...]:
 
 
 def _wishes(plan: FloorPlan, r: Receptacle) -> list[str]:
-    """What it could be called, the shortest first: `sofa` and `low table` are better words than its kind."""
+    """Candidate names of a receptacle, the shortest first: `sofa` and `low table` are better words than its kind."""
     noun = _noun(r)
     room = plan.room_at(r.center[0], r.center[1])
     where = f" in {room.name}" if room and not room.named else f" in the {room.name}" if room else ""
@@ -91,7 +91,7 @@ def _wishes(plan: FloorPlan, r: Receptacle) -> list[str]:
 
 
 def _noun(r: Receptacle) -> str:
-    """Its identifier without a number where that names a surface, else its kind."""
+    """The receptacle's identifier without its number where that is a word for a surface, else its kind."""
     word = re.sub(r"[\s_-]*\d+$", "", r.name).replace("_", " ")
     return word if kind_named(word) == "surface" else r.kind
 

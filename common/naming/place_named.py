@@ -1,4 +1,4 @@
-"""The place that a phrase ends with: `the gnome from the sofa`. Pure."""
+"""Splitting of a phrase into a thing and the place that it ends with: `the gnome from the sofa`. Pure."""
 
 import re
 from collections.abc import Sequence
@@ -32,14 +32,14 @@ def take_place(words: str, household: Household) -> tuple[str, str]:
 
 
 def place_named(words: str, household: Household) -> str:
-    """The name of the receptacle, room or piece of furniture that words call so; "" for none."""
+    """The name of the receptacle, room or piece of furniture that the words stand for; "" for none."""
     rooms = [(r.name, r.aliases) for r in household.rooms]
     seats = [(f.name, (_seat(f.name), *_aliases(_seat(f.name), household))) for f in household.furniture]
     return _named(words, [(r.name, r.aliases) for r in household.receptacles] + rooms + seats)
 
 
 def _seat(furniture: str) -> str:
-    """What people call furniture by whose seat things lie on: a sofa."""
+    """The name of the furniture whose seat this is: `sofa` for `sofa seat`."""
     return furniture.removesuffix(" seat")
 
 

@@ -1,4 +1,4 @@
-"""Words that stand on nearly every pack and say nothing of what is in it. Pure."""
+"""Filter for text read on packs: drops words that stand on nearly every pack. Pure."""
 
 import difflib
 
@@ -24,7 +24,7 @@ SMALL_PRINT = frozenset(_PRINTED.split())
 
 
 def telling(text: str) -> list[str]:
-    """The words of a text that may say what a pack is, normalised."""
+    """The words of a text that may tell what a pack is, normalised."""
     words = [w for w in normalise(text).split() if len(w) >= READABLE and not w.isdigit()]
     words = [w for w in words if len(set(w)) > DIFFERENT * len(w)]
     return [w for w in words if not difflib.get_close_matches(w, SMALL_PRINT, n=1, cutoff=ALIKE)]

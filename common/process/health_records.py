@@ -1,4 +1,4 @@
-"""How each service stands by its health records, for those who watch the robot."""
+"""Table of the services' states from their health records, for viewers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from common import messages as m
 
 @dataclass(frozen=True)
 class ServiceRow:
-    """A service as the table shows it."""
+    """One row of the table: a service's state, restarts and load."""
 
     name: str
     alive: bool
@@ -21,7 +21,7 @@ class ServiceRow:
 
 
 class HealthRecords:
-    """Health records by name; a new epoch of a name is a restart."""
+    """Keeps the newest health record of each service; another epoch of the same name is a restart."""
 
     def __init__(self) -> None:
         self._last: dict[str, m.Health] = {}

@@ -17,7 +17,7 @@ from common.time.clock import monotonic
 
 
 class Presence:
-    """What others see of a process. `clear` says that the service is there, once it is; `stack` closes its session."""
+    """A service as others see it on a bus. `clear` publishes that it is there; `stack` closes its session."""
 
     def __init__(self, session: zenoh.Session, io: ZenohIo, stack: ExitStack | None = None) -> None:
         self.session, self.io = session, io

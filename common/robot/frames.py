@@ -1,4 +1,4 @@
-"""Where the base and its sensors are, as trees of frames are told to other tools: map, odom, base_link.
+"""Frames of the base and its sensors in the tree that other tools expect: map, odom, base_link.
 
 Names by REP 105 (https://www.ros.org/reps/rep-0105.html).
 """
@@ -43,13 +43,13 @@ class BaseFrames:
         self._correction: Pose2 = IDENTITY_POSE
 
     def odometry(self, message: m.Odometry) -> None:
-        """Take what the wheels report."""
+        """Take a message of odometry."""
         if self._odometry and message.t < self._odometry[-1][0]:
             self._odometry.clear()  # another world, whose time began anew
         self._odometry.append((message.t, (message.x, message.y, message.theta)))
 
     def estimate(self, message: m.PoseEstimate) -> None:
-        """Take where navigation believes the base is; without odometry of about that time it says nothing."""
+        """Take navigation's pose estimate; ignored without odometry of about the same time."""
         if self._odometry:
             _, odometry = min(self._odometry, key=lambda sample: abs(sample[0] - message.t))
             self._correction = compose((message.x, message.y, message.theta), inverse(odometry))

@@ -1,4 +1,4 @@
-"""What width and force of the gripper say of an object between its fingers: one rule for every service."""
+"""What the gripper's width and force mean: empty, pressing or holding. One rule for all services."""
 
 from typing import NamedTuple
 
@@ -28,16 +28,16 @@ class Grip(NamedTuple):
 
     @property
     def pressing(self) -> bool:
-        """The fingers press on something, be it on each other."""
+        """True when the fingers press on something, or on each other."""
         return self.force > HOLDING_FORCE
 
     def holds(self, opening: float = OPENING) -> bool:
-        """Something keeps the closing fingers of a gripper that opens to `opening` [m] apart."""
+        """True when something keeps the fingers apart that close; `opening` [m] is the width of the open hand."""
         return EMPTY_WIDTH < self.width < opening - OPEN_PLAY and self.pressing
 
 
 def grip_of(joints: JointStates | None) -> Grip | None:
-    """What joint states say of the gripper; None when they report none."""
+    """The grip by joint states; None when they report no gripper."""
     if joints is None or GRIPPER not in joints.name:
         return None
     index = joints.name.index(GRIPPER)

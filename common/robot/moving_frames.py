@@ -1,4 +1,4 @@
-"""The robot's frames from what it says of itself, for gateways to tools that draw it."""
+"""The robot's coordinate frames over time, from its own messages, for gateways to tools that draw it."""
 
 from collections.abc import Callable
 from math import inf
@@ -15,7 +15,7 @@ D = TypeVar("D")
 
 
 class MovingFrames(Generic[D]):
-    """Base and links where the newest messages have them; `read`: what else a gateway makes of the robot's MJCF.
+    """Frames of base and links by the newest messages; `read`: what else the gateway computes from the robot's MJCF.
 
     A description is read in the worker. One that `read` refuses (ValueError, KeyError) is counted.
     """
@@ -30,7 +30,7 @@ class MovingFrames(Generic[D]):
         self._told = -inf
 
     def take(self, message: m.Message) -> None:
-        """Take a message; of others than those about the robot itself nothing is taken."""
+        """Take a message; those without the robot's pose, joints or description are ignored."""
         if isinstance(message, m.Odometry):
             self._base.odometry(message)
         elif isinstance(message, m.PoseEstimate):
@@ -45,7 +45,7 @@ class MovingFrames(Generic[D]):
         return LinkFrames(mjcf), self._read(mjcf)
 
     def described(self, now: float) -> D | None:
-        """What was read of a description that is new; None when there is none."""
+        """The result of `read` for a new description, once; None while there is none."""
         if self._reading is None or not self._reading.poll(now):
             return None
         job, self._reading = self._reading, None
@@ -57,7 +57,7 @@ class MovingFrames(Generic[D]):
         return found
 
     def poses(self, now: float, rate: float) -> list[FramePose]:
-        """The frames that move, `rate` times a second [Hz]; none in between, and none before the first odometry."""
+        """The moving frames, when they are due at `rate` [Hz]; empty in between and before the first odometry."""
         if not due(rate, now - self._told):
             return []
         self._told = now

@@ -1,4 +1,4 @@
-"""Who may publish, subscribe and ask what: Zenoh access control generated from the topic table.
+"""Zenoh access control, generated from the topic table: who may publish, subscribe to and ask what.
 
 A certificate's common name is `<service>`, or `<namespace>/<service>` for a robot that has a namespace. What is not
 granted here is denied: a service writes and reads the topics whose row names it, and answers its own queries. Clients

@@ -1,4 +1,4 @@
-"""Where the certificates are: a directory with one folder for each, which `tidybot keys` makes.
+"""Location of the certificates: a directory, made by `tidybot keys`, with one folder for each.
 
 `<keys>/<service>/{ca,cert,key}.pem`, and `<keys>/<namespace>/<service>/` for a robot with a namespace. A process may
 also be given its own folder alone. With keys only `tls/` endpoints are used, and both sides show a certificate.

@@ -1,4 +1,4 @@
-"""Why a router does not take us: a TLS handshake of our own says what Zenoh keeps to itself."""
+"""Diagnosis of TLS errors that Zenoh does not report, by a handshake of our own with the router."""
 
 import socket
 import ssl

@@ -1,4 +1,4 @@
-"""Who may use a web server of the robot, the page's or the agents': decisions about addresses, origins and tokens."""
+"""Access rules of the robot's web servers, the page's and the agents': addresses, origins and tokens."""
 
 import hmac
 import ipaddress
@@ -35,7 +35,7 @@ def token_for(host: str, token: str) -> str:
 
 
 def host_is_ours(host_header: str, token: str) -> bool:
-    """Without a token only loopback names may be in the address, so that no other site's name can stand for us."""
+    """True for a `Host` header that may be used: without a token only loopback names, against DNS rebinding."""
     return bool(token) or is_loopback(urlsplit(f"//{host_header}").hostname or "")
 
 
@@ -45,5 +45,5 @@ def same_origin(origin: str | None, host_header: str) -> bool:
 
 
 def admits(token: str, *shown: str | None) -> bool:
-    """True when one of what the visitor shows is the token, or none is needed."""
+    """True when one of the strings that the visitor shows is the token, or none is needed."""
     return not token or any(hmac.compare_digest(token.encode(), s.encode()) for s in shown if s)

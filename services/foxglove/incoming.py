@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.port import Io
-from common.gateway import sound, standing_pose, stop
+from common.gateway import checked, standing_pose, stop
 from common.topic import Topic
 
 
@@ -116,6 +116,6 @@ def message_of(row: Row, io: Io, data: bytes) -> m.Message:
         ValueError: not of the row's kind, or one that cannot be meant; the text is the reason.
     """
     try:
-        return sound(io, row.convert(io, data))
+        return checked(io, row.convert(io, data))
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(str(error)) from None

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.port import Io
-from common.gateway import sound, standing_pose, stop
+from common.gateway import checked, standing_pose, stop
 from common.topic import Topic
 from services.ros2.outgoing import POSE, STRING
 from services.ros2.types import Types
@@ -98,4 +98,4 @@ def message_of(row: Row, types: Types, io: Io, payload: bytes) -> m.Message:
     Raises:
         ValueError: no message of the row's type, or one that cannot be meant; the text is the reason.
     """
-    return sound(io, row.convert(io, types.decode(row.type, payload)))
+    return checked(io, row.convert(io, types.decode(row.type, payload)))
