@@ -1,4 +1,4 @@
-"""Walls at other than right angles to the rest: the lines of lidar end points that lie askew. Pure.
+"""Directions of walls that are not at right angles to the rest of a home, from lidar end points. Pure.
 
 Lines are taken one by one, the one with the most points first, as in Duda and Hart, "Use of the Hough transformation to
 detect lines and curves in pictures", 1972: a wall that is a little askew would else be a stair of short straight ones.

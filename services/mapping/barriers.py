@@ -1,4 +1,4 @@
-"""What holds the robot up and no sensor sees, as panes of glass do: lines through the places where it was met. Pure."""
+"""Panes of glass and other barriers that no sensor sees: lines through the places where they held the base up. Pure."""
 
 import math
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ HEIGHT = 2.0
 
 
 class Met(NamedTuple):
-    """Where the base's middle was [map] when it was held up, and the point `ahead` of it that did so."""
+    """A place where the base was held up: its middle [map], and the point `ahead` of it that it ran into."""
 
     here: Vec2
     ahead: Vec2
@@ -69,7 +69,7 @@ def _frame(point: Vec2, step: Vec2, states: NDArray[np.uint8], grid: Grid) -> Ve
 
 
 def shut(barriers: Sequence[Met], lines: Sequence[tuple[Vec2, Vec2]], grid: Grid) -> Cells:
-    """The cells of the places ahead and of the lines."""
+    """Mask (rows, columns) of the cells on the lines and at the places that were run into."""
     found = np.zeros(grid.shape, bool)
     for a, b in (*((met.ahead, met.ahead) for met in barriers), *lines):
         count = math.ceil(2 * math.dist(a, b) / RESOLUTION) + 1
@@ -78,6 +78,6 @@ def shut(barriers: Sequence[Met], lines: Sequence[tuple[Vec2, Vec2]], grid: Grid
 
 
 def glass(lines: Sequence[tuple[Vec2, Vec2]]) -> list[Wall]:
-    """The lines as walls that a lidar does not see."""
+    """The lines as walls of glass, for the floor plan."""
     ends = [tuple((round(x, 3), round(y, 3)) for x, y in line) for line in lines]
     return [Wall(start=a, end=b, thickness=THICKNESS, height=HEIGHT, glass=True) for a, b in ends]

@@ -1,4 +1,4 @@
-"""Open bins out of the grid: holes in a ring of something low, measured by what pictures showed of the rim. Pure."""
+"""Detection of open bins: holes in a ring of low things on the grid, their rims measured from pictures. Pure."""
 
 import numpy as np
 from scipy import ndimage

@@ -4,7 +4,7 @@ from common.config import Config
 
 
 class MappingConfig(Config, frozen=True):
-    """Lengths in metres, angles in radians, times in seconds."""
+    """How mapping explores and what it writes. Lengths in metres, angles in radians, times in seconds."""
 
     out: str = "map"
     """Directory that the map is written to."""

@@ -43,7 +43,7 @@ FLOOR_POINTS = 400
 
 @dataclass(frozen=True)
 class Picture:
-    """All in the base frame [m]: `floor` (n, 2), `above` (k, 3) that is in the robot's way, `level` (l, 3) points of
+    """Points of a picture in the base frame [m]: `floor` (n, 2), `above` (k, 3) in the robot's way, `level` (l, 3) of
     level surfaces, `low` (j, 3) points of what is lower than 0.6 m, merged as `level`, for bins."""
 
     floor: Array
@@ -53,7 +53,7 @@ class Picture:
 
 
 class CameraModel:
-    """Points of pictures, without the robot's own body, which is what stays where it is however the base turns."""
+    """Turns pictures into points, without the robot's own body, which looks the same whichever way the base heads."""
 
     MINIMUM = 6
     OWN, SAME = 1.15, 0.03
@@ -65,7 +65,7 @@ class CameraModel:
         self._count = 0
 
     def learn(self, image: m.Rgbd) -> None:
-        """One more picture from another heading."""
+        """Take a picture from another heading, to learn which pixels show the robot itself."""
         depth = depths(image)
         near, far = np.where(depth > 0, depth, np.inf), np.where(depth > 0, depth, -np.inf)
         if self._nearest is None or self._nearest.shape != depth.shape:
@@ -78,11 +78,11 @@ class CameraModel:
 
     @property
     def learned(self) -> bool:
-        """Enough headings have been seen."""
+        """True once pictures from enough headings were taken."""
         return self._count >= self.MINIMUM
 
     def own(self, shape: tuple[int, int]) -> NDArray[np.bool_]:
-        """Pixels (h, w) that show the robot itself."""
+        """Mask (h, w) of the pixels that show the robot itself."""
         if self._nearest is None or self._farthest is None or self._nearest.shape != shape or not self.learned:
             return np.zeros(shape, bool)
         same = (self._farthest - self._nearest < self.SAME) & (self._farthest < self.OWN) & np.isfinite(self._nearest)
@@ -91,7 +91,7 @@ class CameraModel:
         return np.asarray(ndimage.binary_dilation(same, np.ones((3, 3)), iterations=self.GROWN))
 
     def read(self, image: m.Rgbd) -> Picture:
-        """What the picture shows.
+        """The points that a picture shows.
 
         Raises:
             PictureError: its data do not have its size, or what a camera does not have.

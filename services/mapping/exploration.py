@@ -24,14 +24,14 @@ NOTHING_KNOWN = Survey(frontiers=0, area=0.0, view=None)
 
 @dataclass
 class Drive:
-    """A goal of navigation, and how it `ended`; "": not yet."""
+    """A goal of navigation; `ended` is its final status, "" until then."""
 
     goal: m.NavGoal
     ended: str = ""
 
 
 class Exploration:
-    """`step` says what is wanted next; what comes of it arrives by `heard`, `surveyed` and `pictures`."""
+    """State machine of an exploration: `step` returns the next action, `heard` and `surveyed` take its outcome."""
 
     def __init__(self, config: MappingConfig, new_id: Callable[[str], str]) -> None:
         self._config, self._new_id = config, new_id
@@ -50,37 +50,37 @@ class Exploration:
 
     @property
     def frontiers(self) -> int:
-        """Places left that can be reached, by the newest survey."""
+        """Number of places still to be looked at that can be reached, by the newest survey."""
         return self._survey.frontiers
 
     @property
     def area(self) -> float:
-        """Floor that is known [m2], by the newest survey."""
+        """Area of known floor [m2], by the newest survey."""
         return self._survey.area
 
     @property
     def driving(self) -> bool:
-        """A goal is under way."""
+        """True while a goal of navigation is under way."""
         return self._state == "driving"
 
     def finish(self) -> None:
-        """Look at nothing more: drive home and save."""
+        """End the exploration: drive home and save."""
         if self.phase == "exploring":
             self.phase = "returning"
 
     def heard(self, feedback: m.NavigationFeedback, now: float) -> None:
-        """What navigation says of the goal under way."""
+        """Take navigation's feedback."""
         drive = self._drive
         if drive is not None and feedback.goal_id == drive.goal.id and feedback.status in ("arrived", "failed"):
             drive.ended = feedback.status
             self.detail = f"{feedback.code} {feedback.detail}".strip() if feedback.status == "failed" else ""
 
     def surveyed(self, survey: Survey) -> None:
-        """What a survey has found."""
+        """Take the result of a survey."""
         self._survey, self._surveyed = survey, True
 
     def step(self, pose: Pose2, now: float, busy: bool) -> Wanted:
-        """What is wanted now, with the robot at `pose` [map]; `busy`: the worker still has to take something in."""
+        """The next action, with the robot at `pose` [map]; `busy`: the worker has not taken in all measurements yet."""
         if self._state == "driving":
             return self._watch_drive(now)
         if self._state == "settling":

@@ -1,4 +1,4 @@
-"""The occupancy grid: what lidar rays passed and hit, where the camera saw floor, and what stands above it.
+"""The occupancy grid: counts of lidar rays that passed and hit each cell, and where the camera saw floor or obstacles.
 
 The lidar alone does not make a cell free: it looks under tables. A cell is free when rays passed it and the camera saw
 its floor, and nothing up to the robot's height above it.
@@ -52,7 +52,7 @@ class Grid:
         self.looked = np.zeros(self.shape, np.uint8)
 
     def clear(self) -> None:
-        """Forget what keyframes and pictures have shown."""
+        """Empty the layers of lidar and pictures."""
         self.passed = np.zeros(self.shape, np.int32)
         self.hits = np.zeros(self.shape, np.int32)
         self.floor = np.zeros(self.shape, np.int32)
@@ -85,7 +85,7 @@ class Grid:
 
     # --- evidence
     def add_scan(self, scan: Scan, pose: Pose2) -> None:
-        """What the rays of a scan passed and hit, taken with the base at `pose`."""
+        """Enter a scan that was taken with the base at `pose` [map]."""
         origin = placed(np.array([scan.lidar]), pose)[0]
         ends = placed(scan.points, pose)
         rays = np.concatenate([ends, placed(scan.passed, pose)]) - origin
@@ -104,7 +104,7 @@ class Grid:
         self._stand(pose)
 
     def fade(self) -> None:
-        """What was seen until now is of an earlier day: it counts, but what is seen from now on counts more."""
+        """Reduce the counts so far, as of an earlier day, so that what is seen from now on outweighs them."""
         for taken, one, other in ((self.walls, self.hits, self.passed), (self.covered, self.tops, self.floor)):
             one[:] = np.where(taken, OLD, 0)
             other[:] = np.where(taken, 0, np.minimum(other, OLD))
@@ -118,7 +118,7 @@ class Grid:
         self.body[self.cells(cells[np.hypot(*(cells - pose[:2]).T) <= BODY])] = True
 
     def add_picture(self, floor: Array, above: Array) -> None:
-        """Where a picture showed floor (n, 2), and where something above it (k, 3) [map]."""
+        """Enter the points of floor (n, 2) and of obstacles above it (k, 3) [map] that a picture showed."""
         for points, layer in ((floor, self.floor), (above, self.tops)):
             mark = np.zeros(self.shape, bool)
             mark[self.cells(points)] = True
@@ -130,13 +130,13 @@ class Grid:
     # --- reading
     @property
     def walls(self) -> Cells:
-        """Occupied for the lidar."""
+        """Mask (rows, columns) of the cells that the lidar sees as occupied."""
         found: Cells = (self.hits > 0) & (self.hits >= HIT_SHARE * (self.hits + self.passed))
         return found
 
     @property
     def tall(self) -> Cells:
-        """Occupied for the lidar, and higher than the camera looks over."""
+        """Mask (rows, columns) of the cells with something that the lidar sees and the camera cannot look over."""
         # The camera sees a wall's face, which may lie in the cell before it.
         highest = ndimage.maximum_filter(self.highest, 3)
         found: Cells = self.walls & ((highest > LOOKED_OVER) | (highest == 0.0))
@@ -144,7 +144,7 @@ class Grid:
 
     @property
     def covered(self) -> Cells:
-        """With something above the floor, at a height at which the robot would touch it."""
+        """Mask (rows, columns) of the cells with something above the floor that the robot would touch."""
         found: Cells = (self.tops >= TOP_PICTURES) & (self.tops > TOP_SHARE * self.floor)
         return found
 
@@ -156,7 +156,7 @@ class Grid:
         return np.where(taken, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
 
     def known(self, states: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], tuple[float, float]]:
-        """The part of the states around what is known, and its south-west corner [map]."""
+        """The states cut to the rectangle around all known cells, and its south-west corner [map]."""
         rows, columns = np.nonzero(states != UNKNOWN)
         if not len(rows):
             rows = columns = np.zeros(1, int)
@@ -165,7 +165,7 @@ class Grid:
         return part, (self.origin[0] + left * RESOLUTION, self.origin[1] + top * RESOLUTION)
 
     def message(self, t: float, odom: Pose2, states: NDArray[np.uint8]) -> m.MapGrid:
-        """The map for others; cut to what is known."""
+        """The map as a message, cut to what is known."""
         part, (x, y) = self.known(states)
         return m.MapGrid(
             t=t, x=x, y=y, resolution=RESOLUTION, width=part.shape[1], height=part.shape[0],

@@ -1,4 +1,4 @@
-"""The map in the making: trajectory, grid and what pictures showed, each picture held by its keyframe."""
+"""The growing map: trajectory, grid and pictures, each picture fixed to a keyframe so that it moves with it."""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -29,7 +29,7 @@ class Shot(NamedTuple):
 
 
 class Mapper:
-    """Lives in the service's worker: everything here may take some tens of milliseconds.
+    """Builds the map; to be called in the service's worker, since every call may take some tens of milliseconds.
 
     `met`: what held the robot up unseen, each in the frame of a keyframe, `panes` what that tells of [map].
     """
@@ -44,7 +44,7 @@ class Mapper:
         self._unread: list[tuple[m.Rgbd, int, Pose2, bool]] = []
 
     def add_scan(self, scan: Scan, odometry: Pose2) -> NDArray[np.uint8]:
-        """Take a keyframe; the states of all cells."""
+        """Take a keyframe; returns the states of all cells."""
         if self.trajectory.runs[-1] == len(self.trajectory) > 0:
             self.grid.fade()
         bent = self.trajectory.add(scan, odometry)
@@ -55,7 +55,7 @@ class Mapper:
         return self.grid.states()
 
     def add_picture(self, image: m.Rgbd, odometry: Pose2, still: bool) -> NDArray[np.uint8]:
-        """Take a picture of a moment at which the wheels said `odometry`; the states of all cells.
+        """Take a picture from when the base was at `odometry` [odom]; returns the states of all cells.
 
         Raises:
             PictureError: the picture's data do not have its size.
@@ -85,7 +85,7 @@ class Mapper:
             self.grid.looked += in_view & (self.grid.looked < 250)
 
     def draw(self) -> None:
-        """The grid anew, from where all keyframes are now."""
+        """Draw the grid anew from the present poses of all keyframes."""
         self.grid.clear()
         self.grid.near[:], self.grid.looked[:] = False, 0
         runs = [*self.trajectory.runs, len(self.trajectory)]
@@ -99,14 +99,14 @@ class Mapper:
                     self._draw(shot)
 
     def meet(self, met: Met) -> NDArray[np.uint8]:
-        """Take what held the robot up unseen [map]; the states of all cells."""
+        """Take a place where something unseen held the base up; returns the states of all cells."""
         keyframe = len(self.trajectory) - 1
         back = inverse(self.trajectory.poses[keyframe])
         self.met.append((keyframe, _moved(met, back)))
         return self.states()
 
     def states(self) -> NDArray[np.uint8]:
-        """FREE, OCCUPIED or UNKNOWN for each cell, with the panes anew: more of their frames may be known."""
+        """FREE, OCCUPIED or UNKNOWN for each cell; fits panes anew, as more of their frames may be known."""
         barriers = [_moved(met, self.trajectory.poses[keyframe]) for keyframe, met in self.met]
         self.grid.shut[:] = False
         states = self.grid.states()
@@ -116,7 +116,7 @@ class Mapper:
         return states
 
     def survey(self, here: Pose2, barred: list[Vec2]) -> tuple[Survey, NDArray[np.uint8]]:
-        """What is left to be seen, from where next, and the states of all cells."""
+        """What is left to be seen and the next view, with the states of all cells."""
         states = self.states()
         return survey(self.grid, states, here, barred), states
 

@@ -1,4 +1,4 @@
-"""The wheels' pose at a stamp."""
+"""Interpolation of odometry at the time of a scan or picture."""
 
 from collections import deque
 from collections.abc import Iterable
@@ -15,14 +15,14 @@ STALE = 0.5
 
 
 class OdometryBuffer:
-    """The last seconds of `base/odom`; `turning` is how fast the base turns now [rad/s]."""
+    """Keeps the last seconds of odometry; `turning` is the newest rate of turn [rad/s]."""
 
     def __init__(self) -> None:
         self._rows: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
         self.turning = 0.0
 
     def take(self, messages: Iterable[m.Odometry]) -> None:
-        """Keep new samples; those of a clock that went back begin anew."""
+        """Add samples; when the clock has gone back, older ones are dropped."""
         for o in messages:
             if not all(abs(v) <= MAX_VALUE for v in (o.t, o.x, o.y, o.theta, o.omega)):
                 continue
@@ -33,11 +33,11 @@ class OdometryBuffer:
 
     @property
     def newest(self) -> Pose2 | None:
-        """Where the wheels say that the base is; None before the first sample."""
+        """The newest pose [odom]; None before the first sample."""
         return self._rows[-1][1] if self._rows else None
 
     def at(self, t: float) -> Pose2 | None:
-        """Between the two samples around `t` [s]; None when they do not reach so far back."""
+        """The pose [odom] at time `t` [s], interpolated; None when the samples do not reach so far back."""
         if not self._rows or t < self._rows[0][0] - STALE:
             return None
         return pose_at(self._rows, t)

@@ -1,4 +1,4 @@
-"""A floor plan out of what was mapped: walls, furniture, surfaces and bins with where they are reached from. Pure."""
+"""Floor plan of a mapped home: walls, furniture, surfaces and bins with the sides they are reached from. Pure."""
 
 import math
 from collections.abc import Sequence
@@ -42,7 +42,7 @@ MARGIN = 0.15
 
 
 class Lidar(NamedTuple):
-    """End points (n, 2) [map] of all keyframes and where each was seen from."""
+    """Lidar end points (n, 2) [map] of all keyframes, and the sensor's position (n, 2) [map] for each."""
 
     points: Array
     eyes: Array

@@ -24,7 +24,7 @@ HUBER = 2.0
 
 
 class Edge(NamedTuple):
-    """Keyframe `end` seen from keyframe `start`."""
+    """A constraint: the pose of keyframe `end` in the frame of keyframe `start`."""
 
     start: int
     end: int
@@ -40,13 +40,13 @@ class PoseGraph:
         self.edges: list[Edge] = []
 
     def add(self, pose: Pose2, *edges: Edge) -> int:
-        """A keyframe with a guess of its pose; its number."""
+        """Add a keyframe with a guess of its pose [map]; returns its number."""
         self.poses.append(pose)
         self.edges += edges
         return len(self.poses) - 1
 
     def optimise(self) -> float:
-        """Move the keyframes to where the constraints want them; the farthest that one moved [m]."""
+        """Move the keyframes to the optimum of all constraints; returns the farthest that one moved [m]."""
         if not self.edges:
             return 0.0
         import gtsam

@@ -1,4 +1,4 @@
-"""Rooms: parts of the floor between which there are walls, doors and other openings in a wall. Pure.
+"""Segmentation of the floor into rooms, at walls, doors and other openings. Pure.
 
 Source: Bormann et al., "Room segmentation: survey, implementation, and analysis", ICRA 2016 (distance transform).
 """

@@ -1,4 +1,4 @@
-"""What mapping leaves on disk, and takes up again: the map, the pose graph, surfaces, a household, and its evidence."""
+"""Saving and resuming a map: grid, pose graph, surfaces, household and the evidence for them, as files."""
 
 import json
 from pathlib import Path
@@ -37,7 +37,7 @@ class Saved(NamedTuple):
 
 
 def save(directory: Path, name: str, mapper: Mapper) -> Saved:
-    """Optimise once more and write every file.
+    """Optimise the pose graph once more and write all files.
 
     Raises:
         SaveError: the directory cannot be written to.
@@ -62,7 +62,7 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
 
 
 def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Household:
-    """The household as far as it is mapped."""
+    """The household made from the map as far as it goes."""
     trajectory = mapper.trajectory
     points = [placed(s.points, p) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
     eyes = [np.tile(p[:2], (len(s.points), 1)) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
@@ -105,7 +105,7 @@ def graph_rows(graph: PoseGraph, scans: list[Scan], runs: list[int]) -> dict[str
 
 
 def resume(directory: Path, mapper: Mapper) -> None:
-    """Go on with the map of a directory.
+    """Load the map in a directory, to go on with it.
 
     Raises:
         SaveError: a file that is missing or that cannot be read.

@@ -8,7 +8,7 @@ from common.robot.lidar import rays_of
 
 
 class Scan(NamedTuple):
-    """Taken at `t` [s]: `points` (n, 2) are where rays ended, `passed` (k, 2) how far the others went without a hit;
+    """A scan at `t` [s]: `points` (n, 2) are where rays ended, `passed` (k, 2) how far the others went without a hit;
     both in the base frame, and `lidar` is where the rays began [m]."""
 
     t: float

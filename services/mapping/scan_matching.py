@@ -1,4 +1,4 @@
-"""Scan matching: where one set of lidar end points lies on another, by GICP of small_gicp.
+"""Scan matching: registration of one set of lidar end points with another, by small_gicp's GICP.
 
 Planar points are repeated in layers above each other, so that a wall is a vertical plane whose normal the library can
 estimate. Source: Segal et al., "Generalized-ICP", RSS 2009; Koide, "small_gicp", JOSS 2024.
@@ -34,7 +34,7 @@ class Match(NamedTuple):
 
 
 class Target:
-    """Points (n, 2) to match others to."""
+    """Points (n, 2) that others are matched to, prepared for repeated use."""
 
     def __init__(self, points: Array) -> None:
         import small_gicp
@@ -43,7 +43,7 @@ class Target:
         self._plane = KDTree(points)
 
     def match(self, points: Array, guess: Pose2, reach: float = REACH) -> Match:
-        """Where points (n, 2) of another frame lie best, from a guess of that frame's pose."""
+        """Match points (n, 2) of another frame, from a guess of that frame's pose."""
         if len(points) < MIN_POINTS:
             return Match(guess, 0.0)
         import small_gicp

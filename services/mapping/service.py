@@ -37,7 +37,7 @@ WAITING = 12
 
 
 class MappingService:
-    """Keeps the pose of the wheels' frame up to date in `mapping/map`, which navigation drives by."""
+    """Explores and maps; publishes `mapping/map` with the pose of frame odom in it, by which navigation drives."""
 
     NAME = "mapping"
     HZ = 20
@@ -69,7 +69,7 @@ class MappingService:
         self._shown = (-1, "")
 
     def step(self, now: float) -> None:
-        """Take what was measured, move the work in the worker on, and decide where to look next."""
+        """Take measurements, pass work to the worker and take its results, and decide where to look next."""
         io = self._io
         self._odometry.take(io.take_all(topics.ODOMETRY))
         scans = io.take_all(topics.SCAN)

@@ -1,4 +1,4 @@
-"""Level surfaces out of the points that pictures showed of them: height, and the rectangle that they fill. Pure."""
+"""Detection of level surfaces among points of pictures: their height, and the rectangle that they fill. Pure."""
 
 import math
 from typing import NamedTuple
@@ -33,7 +33,7 @@ INSET = 0.0
 
 
 class Surface(NamedTuple):
-    """`outline` [map] of a level surface at `height` [m]; `points` (n, 2) were seen of it."""
+    """A level surface at `height` [m] with its `outline` [map] and the `points` (n, 2) [map] that were seen of it."""
 
     outline: Rectangle
     height: float

@@ -30,7 +30,7 @@ BENT = 0.01
 
 
 class Trajectory:
-    """Keyframes with their scans; `odom` is the pose of the wheels' frame in the map."""
+    """Keyframes with their scans; `odom` is the pose of frame odom in the map."""
 
     def __init__(self) -> None:
         self.graph = PoseGraph()
@@ -50,20 +50,20 @@ class Trajectory:
         return self.graph.poses
 
     def resume(self, graph: PoseGraph, scans: list[Scan], runs: list[int]) -> None:
-        """Go on with an older map, made in `runs`; the robot stands where it began."""
+        """Go on with an older map, whose runs began at the keyframes `runs`; the robot stands where it began."""
         self.graph, self.scans = graph, list(scans)
         self._odometry = [(math.nan,) * 3] * len(scans)
         self.runs = [*runs, len(scans)]
 
     def due(self, odometry: Pose2, distance: float, turn: float) -> bool:
-        """The wheels have gone so far since the last keyframe that the next is due."""
+        """True when the base has moved far enough since the last keyframe for another."""
         if not self._odometry or math.isnan(self._odometry[-1][0]):
             return True
         dx, dy, angle = compose(inverse(self._odometry[-1]), odometry)
         return math.hypot(dx, dy) >= distance or abs(angle) >= turn
 
     def add(self, scan: Scan, odometry: Pose2) -> bool:
-        """Take a keyframe; True when the ones before it have moved."""
+        """Add a keyframe; True when earlier ones have moved by a loop closure."""
         if not self.scans or math.isnan(self._odometry[-1][0]):
             return self._first(scan, odometry)
         step = compose(inverse(self._odometry[-1]), odometry)

@@ -1,4 +1,4 @@
-"""Where to look next: the standing pose from which the camera sees most of what is unknown, for the way there. Pure.
+"""The next best view: the base pose that shows most unknown floor for the length of the way to it. Pure.
 
 Frontiers are unknown cells beside floor that the robot can reach; what stands above the floor counts as well until it
 was seen from near. A pose is chosen by what it shows against the way to it.
@@ -57,14 +57,14 @@ HOME_COST = 1.0
 
 
 class View(NamedTuple):
-    """A standing pose, what it shows [cells] and what is left to be seen anywhere [places]."""
+    """A base pose and its `gain`, the number of cells worth seeing that it shows."""
 
     pose: Pose2
     gain: float
 
 
 class Survey(NamedTuple):
-    """`frontiers` places are left that can be reached, `view` is the best pose; None when nothing is left."""
+    """Reachable `frontiers` left, known floor `area` [m2], and the next `view`, None when nothing is left."""
 
     frontiers: int
     area: float
@@ -72,7 +72,7 @@ class Survey(NamedTuple):
 
 
 def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: Sequence[Vec2]) -> Survey:
-    """What is left to be seen, and from where next; `barred` are positions that could not be reached."""
+    """Find what is left to be seen and the next best view; `barred` are positions that could not be reached."""
     free = states == FREE
     distance = ndimage.distance_transform_edt(free) * RESOLUTION - RESOLUTION / 2
     passable = distance >= CLEARANCE - RESOLUTION
@@ -102,7 +102,7 @@ def _roomiest(room: Array) -> Index:
 
 
 def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:
-    """Cells that a view should show: frontiers, and what stands above the floor unseen from near; and their places."""
+    """Cells that a view should show, frontiers and things not yet seen from near, and the places that they form."""
     free = states == FREE
     # Into gaps and pockets the robot does not fit; where no ray of the lidar has passed, a wall that is near may be in
     # between. Far from the lidar there are cells between its rays.
@@ -128,7 +128,7 @@ def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cel
 
 
 def shown(grid: Grid, pose: Pose2, reach: tuple[float, float], blocked: Cells) -> Cells:
-    """Cells that the camera has in view from `pose` between two distances [m], with nothing `blocked` in between."""
+    """Mask of cells in the camera's view from `pose` between two distances [m], with no `blocked` cell before them."""
     rows, columns = np.nonzero(_disc(grid, pose, reach[1]))
     cells = grid.points((rows, columns))
     seen = _sees(grid, np.array([pose[:2]]), cells, reach, blocked)[0]

@@ -1,4 +1,4 @@
-"""Walls out of lidar end points: straight faces, and where two of them are the sides of one wall. Pure.
+"""Detection of walls in lidar end points: straight faces, and pairs of them that are two sides of one wall. Pure.
 
 Most walls of a home are along two directions at right angles, some askew (`askew.py`). The faces along a direction
 are found in histograms of the points' offsets, each to a fraction of the lidar's noise by the mean of the many points
@@ -83,7 +83,7 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
 
 
 def main_direction(normals: Array) -> float:
-    """The angle in (-45, 45] degrees by which the home is turned, of normals (n,) [rad]."""
+    """The angle [rad] within (-45, 45] degrees by which the home is turned, from the angles (n,) [rad] of normals."""
     mean = complex(np.mean(np.exp(4j * normals)))
     first = math.atan2(mean.imag, mean.real) / 4
     off = np.mod(normals - first + math.pi / 4, math.pi / 2) - math.pi / 4
