@@ -98,7 +98,6 @@ def servo_lead(model: Any, actuators: NDArray[np.int64], dofs: NDArray[np.int64]
     return np.asarray((rate_gain + model.dof_damping[dofs]) / gain)
 
 
-# --- the gripper as its driver knows it: width and speed of the pads, and what a newton at a finger is at the motor
 def view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
     """The entries `at` of an array of MjData, which must lie side by side, as a view that stays current."""
     if (np.diff(at) != 1).any():
@@ -107,6 +106,7 @@ def view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
     return found
 
 
+# --- the gripper as its driver knows it: width and speed of the pads, and what a newton at a finger is at the motor
 class Fingers:
     """Fingers that a motor moves through a linkage: the motor's travel says how wide they are.
 
