@@ -1,4 +1,4 @@
-"""The base's driver: an acceleration-limited set-point that runs to a target pose or follows a velocity."""
+"""The base's driver: an acceleration-limited set-point that moves to a target pose or follows a velocity."""
 
 import math
 from dataclasses import dataclass, field
@@ -43,7 +43,7 @@ class BaseDriver:
     _brake: "Brake" = field(default_factory=lambda: Brake())
 
     def go_to(self, x: float, y: float, theta: float, target_id: str, now: float) -> None:
-        """Run to a pose; replaces whatever was asked before.
+        """Move to a pose, in place of any earlier command.
 
         One target is run to its end. Targets that come as a stream are good for `target_timeout` each: whoever
         steers the base may die or lose the network in mid-drive.
@@ -59,7 +59,7 @@ class BaseDriver:
         self._twist, self._twist_until = (vx, vy, omega), now + self.config.stream_timeout
 
     def halt(self, actual: Pose2) -> None:
-        """Brake as hard as the wheels can, and stay where that ends."""
+        """Brake as hard as the wheels can, and hold where that ends."""
         if not self.stopped:
             self.pose, self.velocity, self._brake.applied = actual, (0.0, 0.0, 0.0), True
         self.target, self._twist_until, self.stopped = None, -1.0, True
@@ -133,7 +133,7 @@ class BaseDriver:
 
 @dataclass
 class Brake:
-    """Whether the wheels only brake: after a stop until the base rests, and while somebody pushes it.
+    """Decides whether the wheels only brake: after a stop until the base rests, and while somebody pushes it.
 
     `inertia` (x, y) [N]: what the wheels have to push with to accelerate the robot itself.
     """
@@ -144,7 +144,7 @@ class Brake:
     _pushed: float = 0.0
 
     def holds(self, actual: Pose2, force: tuple[float, float] | None, dt: float) -> bool:
-        """For the next `dt` seconds, with the base at `actual` and the wheels pushing with `force` (x, y) [N]."""
+        """True when the wheels brake for the next `dt` [s]; the base is at `actual`, `force` [N] is the wheels'."""
         moving = self._was is not None and math.dist(actual[:2], self._was[:2]) > _STILL * dt
         self._was = actual
         self.applied = self.applied and moving

@@ -1,4 +1,4 @@
-"""One robot's part of a MuJoCo world: its joints, motors, fingers and contacts. Names are resolved once."""
+"""One robot in a MuJoCo world: its joints, motors, fingers and contacts, with names resolved once."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ AT_REST = 1e-3
 
 
 class Body:
-    """The robot whose parts bear their own names in `names`, a model of the same world as `model`.
+    """The robot whose parts have their plain names in `names`, a description of the same world as `model`.
 
     Where several robots are in one world, each has a description of its own that differs in names alone.
     """
@@ -51,7 +51,7 @@ class Body:
         self.contacts = Contacts(names, self.robot_bodies, self.pads, objects)
 
     def at_home(self, pose: tuple[float, float, float]) -> None:
-        """Put the robot at a pose (x, y, yaw) [map] with its arm as it is carried."""
+        """Put the robot at a pose (x, y, yaw) [map] with its arm in the carry pose."""
         home = (*pose, *self.home_arm)
         self.data.qpos[self.qpos_at] = home
         self.data.ctrl[self.ctrl_at] = home
@@ -62,7 +62,7 @@ class Body:
         self.limit_effort(effort)
 
     def limit_effort(self, effort: float) -> None:
-        """The most that each finger presses [N]; not part of MuJoCo's state."""
+        """Limit each finger's force [N]; the limit is not part of MuJoCo's state."""
         most = effort * self.fingers.per_newton
         self.model.actuator_forcerange[self.gripper_ctrl] = (-most, most)
 
@@ -132,20 +132,20 @@ class Fingers:
         self.hold()
 
     def close(self, share: float) -> None:
-        """Go to `share` of the way from open (0) to closed (1)."""
+        """Set the goal to `share` of the way from open (0) to closed (1)."""
         self._goal = self._low + share * (self._high - self._low)
 
     @property
     def wanted(self) -> float:
-        """Where they were told to go: 0 open, 1 closed."""
+        """The goal: 0 open, 1 closed."""
         return (self._goal - self._low) / (self._high - self._low)
 
     def hold(self) -> None:
-        """Stay where the set-point is."""
+        """Set the goal to the present set-point."""
         self._goal = float(self._ctrl[0])
 
     def advance(self) -> None:
-        """Move the set-point on by 10 ms, no faster than the pads can."""
+        """Move the set-point towards the goal for 10 ms, no faster than the pads can follow."""
         now, low, high = float(self._ctrl[0]), self._lengths[0], self._lengths[-1]
         stands = self._low + (float(self._length[0]) - low) / (high - low) * (self._high - self._low)
         if (now - stands) * (self._goal - stands) < 0:
@@ -153,7 +153,7 @@ class Fingers:
         self._ctrl[0] = now + max(-self._most, min(self._most, self._goal - now))
 
     def width(self) -> float:
-        """Distance between the pads [m], as fine as the gripper tells where its motor stands."""
+        """Distance between the pads [m], with the resolution of the motor's encoder."""
         low, high = self._lengths[0], self._lengths[-1]
         count = round((self._length[0] - low) / (high - low) * COUNTS)
         return float(np.interp(low + count / COUNTS * (high - low), self._lengths, self._widths))

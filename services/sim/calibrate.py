@@ -1,4 +1,4 @@
-"""What the gripper's linkage does, measured on the model: width, posture and pinch point for the motor's travel."""
+"""Calibration of the gripper's linkage on the model: width, posture and pinch point for the motor's travel."""
 
 import xml.etree.ElementTree as ET
 from typing import Any
@@ -33,7 +33,7 @@ def load(root: ET.Element) -> tuple[Any, Any]:
 
 
 def measure_hand(root: ET.Element) -> None:
-    """Close the gripper step by step: note widths and postures, put the site `pinch` between the pads."""
+    """Close the gripper step by step, write widths and postures into the model, and place the site `pinch`."""
     model, data = load(root)
     model.opt.gravity[:] = 0.0
     model.opt.timestep, model.opt.integrator = 0.002, mujoco.mjtIntegrator.mjINT_IMPLICITFAST

@@ -1,4 +1,4 @@
-"""The world on disk, twice a second, so that a simulation that was killed goes on where it was."""
+"""Checkpoints of the world on disk, twice a second, from which a simulation that was killed goes on."""
 
 import hashlib
 from pathlib import Path
@@ -14,7 +14,7 @@ NAME = "sim.checkpoint"
 
 
 class Checkpoint(msgspec.Struct):
-    """Everything that a world is made of: `physics` float64 bytes of MuJoCo's integration state, `setpoint` of base
+    """The complete state of a world: `physics` float64 bytes of MuJoCo's integration state, `setpoint` of base
     and arm, `odometry` the believed pose, `touches` the log of contacts, `charge` of the battery. `run` and `model` say
     to which run and model it belongs.
     """
@@ -35,17 +35,17 @@ class Checkpoint(msgspec.Struct):
 
 
 def fingerprint(mjcf: str) -> str:
-    """Hash that names a model."""
+    """A hash that identifies a model."""
     return hashlib.sha256(mjcf.encode()).hexdigest()[:16]
 
 
 def save(path: Path, state: Checkpoint) -> str:
-    """Replace the file in one step; the reason when that was not possible."""
+    """Save atomically; returns the reason when that was not possible, else ""."""
     return atomic_file.replace(path, msgspec.msgpack.encode(state))
 
 
 def load(path: Path, run: str, model: str) -> Checkpoint | None:
-    """The last state of this run and model, None when there is none or it cannot be read."""
+    """The last checkpoint of this run and model, None when there is none or it cannot be read."""
     try:
         state = msgspec.msgpack.decode(path.read_bytes(), type=Checkpoint)
     except (OSError, msgspec.DecodeError):

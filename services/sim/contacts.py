@@ -1,4 +1,4 @@
-"""What the robot and the object in its hand touch, taken from every physics step; for evaluators.
+"""Log of what the robot and the object in its hand touch, from every physics step, for evaluators.
 
 Of each touch between a part and a thing the log keeps the greatest force, the impulse, the duration and the depth; an
 object in the hand presses with what is beyond its own weight.
@@ -29,7 +29,7 @@ Pair = tuple[str, str, m.TouchKind]
 
 
 class Contacts:
-    """`step` takes down who touches whom after one physics step; `take` hands out what is new."""
+    """The log: `step` adds the contacts of one physics step, `take` returns the entries new or changed since."""
 
     def __init__(
         self, model: Any, robot_bodies: set[int], pads: tuple[frozenset[int], frozenset[int]], objects: dict[str, int]
@@ -50,13 +50,13 @@ class Contacts:
         self.forget()
 
     def forget(self) -> None:
-        """Forget all contacts: the world begins anew."""
+        """Empty the log, for a world that begins anew."""
         self._touches: list[m.Touch] = []
         self._current: dict[Pair, m.Touch] = {}
         self._fresh: dict[int, m.Touch] = {}
 
     def restore(self, touches: list[m.Touch]) -> None:
-        """Go on with the log of the process before."""
+        """Replace the log by that of the process before."""
         self.forget()
         self._touches = touches
 
@@ -78,7 +78,7 @@ class Contacts:
             self._note(data, pairs, now)
 
     def _classify(self, geoms: NDArray[np.int32]) -> tuple[tuple[int, Pair], ...]:
-        """Those of the touching geoms (n, 2) that count: index and pair."""
+        """Index and pair of those of the touching geoms (n, 2) that count."""
         rows: list[tuple[int, int]] = [(int(a), int(b)) for a, b in geoms]
         left, right = (
             {self._object[other] for a, b in rows for geom, other in ((a, b), (b, a)) if geom in pad}
@@ -93,7 +93,7 @@ class Contacts:
         return tuple(found)
 
     def _pair(self, part: int, thing: int, held: set[str]) -> Pair | None:
-        """What it is that geom `part` of the robot or of a held object touches; None if it does not count."""
+        """The pair to log for geom `part` of the robot or a held object on geom `thing`; None if it does not count."""
         if self._robot[part]:
             if self._robot[thing]:
                 if any(part in pad for pad in self._pads) and any(thing in pad for pad in self._pads):
@@ -143,7 +143,7 @@ class Contacts:
         return force
 
     def _beyond_weight(self, thing: str, net: NDArray[np.float64]) -> float:
-        """What of the force (3,) [N] on an object is not its surface bearing all or a part of its weight."""
+        """Magnitude [N] of the force (3,) on an object beyond what a surface exerts that bears its weight."""
         upward = float(net[2])
         return math.hypot(float(net[0]), float(net[1]), max(0.0, upward - self._weight[thing], -upward))
 
@@ -154,7 +154,7 @@ class Contacts:
 
     @property
     def touches(self) -> list[m.Touch]:
-        """The newest since the world was laid out, KEPT of them at least if there were so many, oldest first."""
+        """The newest entries since the world was laid out, oldest first: all, or at least KEPT."""
         return self._touches
 
 

@@ -1,4 +1,4 @@
-"""Lamps, and what floors, walls and table tops are covered with: thin pictures in front, which collide with nothing."""
+"""Lamps, and coverings of floors, walls and table tops: thin textured geoms that collide with nothing."""
 
 import math
 
@@ -13,7 +13,7 @@ CEILING = 3.5
 
 
 def lights(scene: Scene) -> str:
-    """The lamps of the world, or one for each room."""
+    """MJCF of the world's lamps, or of one for each room where it has none."""
     usual = [Lamp(position=(*room.middle, CEILING), colour=(1.0, 1.0, 0.97)) for room in scene.rooms]
     return "".join(_light(lamp) for lamp in scene.lamps or usual)
 
@@ -53,7 +53,7 @@ def _sheet(name: str, material: str, half: tuple[float, float], pos: tuple[float
 
 
 def walls(scene: Scene) -> str:
-    """Paper on both sides of every wall."""
+    """MJCF of wallpaper on both sides of every wall."""
     if not scene.finish.walls:
         return ""
     sheets = []
@@ -73,7 +73,7 @@ def walls(scene: Scene) -> str:
 
 
 def tables(scene: Scene) -> str:
-    """Cloth, wood or stone on what is a table."""
+    """MJCF of cloth, wood or stone on every table top."""
     if not scene.finish.tables:
         return ""
     return "".join(

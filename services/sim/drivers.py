@@ -1,4 +1,4 @@
-"""The robot's drivers: what the base, the arm and the gripper are told, and the set-points their servos follow."""
+"""The robot's drivers: from commands to base, arm and gripper to the set-points that their servos follow."""
 
 import math
 from collections.abc import Callable
@@ -35,7 +35,7 @@ MAX_DISTANCE = 50.0
 
 
 class Drivers:
-    """Base, arm and gripper of the simulated robot. `told` hears of every stop and of the end of one: state, detail."""
+    """Drivers of base, arm and gripper; `told(state, detail)` is called when the brake is applied or released."""
 
     def __init__(self, config: SimConfig, io: Io, body: Body, pose: Pose2, told: Callable[[str, str], None]) -> None:
         self._config, self._io, self._body, self._told = config, io, body, told
@@ -46,7 +46,7 @@ class Drivers:
         body.grip(0.0, self.effort)
 
     def resume(self, state: Checkpoint) -> None:
-        """Stand at rest where another process left the robot, nothing commanded."""
+        """Go on from a checkpoint: at rest where the robot was, with nothing commanded."""
         actual = self._body.joints
         self.put((float(actual[0]), float(actual[1]), float(actual[2])), stopped=state.stopped)
         self.setpoint[3:] = state.setpoint[3:]
@@ -55,12 +55,12 @@ class Drivers:
         self._body.limit_effort(state.effort)
 
     def put(self, pose: Pose2, stopped: bool = False) -> None:
-        """The base rests at a pose (x, y, yaw)."""
+        """Set the base's set-point to a pose (x, y, yaw) [map], at rest."""
         self.base = BaseDriver(self._config, pose, stopped=stopped)
         self.setpoint[:3] = self._body.ctrl[:3] = pose
 
     def advance(self, believed: Pose2, now: float) -> tuple[Array, Array]:
-        """Set-points (10,) of base, arm at the begin and at the end of a tick; `believed`: the odometry's pose."""
+        """Set-points (10,) of base and arm at the beginning and the end of a tick; `believed`: the pose by odometry."""
         x, y, yaw, *_ = self._body.joints.tolist()
         fx, fy, *_ = self._body.forces.tolist()
         after = np.empty(10)
@@ -72,7 +72,7 @@ class Drivers:
         return before, after
 
     def take_commands(self, now: float) -> None:
-        """Hear what came since the last tick; what is out of range is counted and not followed."""
+        """Take the commands since the last tick; those out of range are counted and not followed."""
         io = self._io
         self._take_stops()
         for target in io.take_all(topics.BASE_TARGET):
@@ -138,7 +138,7 @@ class ArmDriver:
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
     def follow(self, position: list[float], period: float, now: float, actual: Array) -> str:
-        """Take the next set-point, with the joints (7,) measured at `actual`; the reason when it is refused."""
+        """Take the next set-point, with the joints (7,) at `actual`; returns why it is refused, "" if it is not."""
         goal: Any = np.array(position)
         if goal.shape != (7,) or not np.isfinite(goal).all() or not 0 < period <= 1.0:
             return "a set-point is 7 finite angles and a period of at most 1 s"

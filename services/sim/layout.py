@@ -1,4 +1,4 @@
-"""Where the objects stand for a seed: on surfaces, near an edge the robot can stand at, apart from each other."""
+"""Layout of the objects for a seed: on surfaces, near an edge that the robot can reach, apart from each other."""
 
 import math
 from dataclasses import dataclass

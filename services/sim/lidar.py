@@ -1,4 +1,4 @@
-"""A 2-D lidar by MuJoCo ray casting, in a slot of the chassis: its posts and the low arm are in the way."""
+"""A 2-D lidar by ray casting, in a slot of the chassis, whose posts and, when low, the arm occlude some rays."""
 
 import math
 from typing import Any

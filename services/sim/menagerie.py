@@ -1,4 +1,4 @@
-"""Where MuJoCo Menagerie's model of the robot is on this machine."""
+"""Location of MuJoCo Menagerie's model of the robot on this machine."""
 
 import importlib
 import os
@@ -11,7 +11,7 @@ HOME_PAGE = "github.com/google-deepmind/mujoco_menagerie"
 
 
 class RobotError(Exception):
-    """The robot cannot be had; the text says what to do."""
+    """The model is not available; the message says what to do."""
 
 
 def find() -> Path:

@@ -1,4 +1,4 @@
-"""The robot that the simulation has: TidyBot in primitives, or the same under the official model's skin."""
+"""The simulated robot as MJCF: TidyBot in primitives, or the same drawn with the official model's meshes."""
 
 import copy
 import functools
@@ -17,7 +17,7 @@ _SECTIONS = ("default", "contact", "tendon", "equality", "actuator", "custom")
 
 @dataclass(frozen=True)
 class Robot:
-    """`body` and `assets` go into the world's own sections, `rest` behind them; `mjcf` is the robot alone."""
+    """MJCF of a robot: `body` and `assets` go into the world's sections, `rest` after them; `mjcf` is it alone."""
 
     name: str
     body: str
@@ -40,7 +40,7 @@ _NAMES = frozenset((
 
 
 def beside(robot: Robot, name: str) -> tuple[str, str]:
-    """`body` and `rest` of another robot of the same make, all of whose parts bear its name before their own."""
+    """`body` and `rest` of a second robot of the same model, with `name/` before the name of each part."""
 
     def called(text: str) -> ET.Element:
         root = ET.fromstring(f"<parts>{text}</parts>")

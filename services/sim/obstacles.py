@@ -1,4 +1,4 @@
-"""Boxes and people that the robot's map does not have: kinematic bodies that stand, or walk their path."""
+"""Boxes and people that are not on the robot's map: kinematic bodies that stand or walk along a path."""
 
 import math
 from collections.abc import Sequence
@@ -62,7 +62,7 @@ def body_xml(o: Obstacle) -> str:
 
 
 class Walker:
-    """One obstacle's way: how far along its path it is."""
+    """One obstacle that moves along a path."""
 
     def __init__(self, obstacle: Obstacle, mocap: int) -> None:
         self.obstacle, self.mocap = obstacle, mocap
@@ -103,7 +103,7 @@ class Walker:
 
 
 class Obstacles:
-    """All obstacles. `solids` is what people walk round."""
+    """All obstacles of a world; `solids` are the rectangles that people walk round."""
 
     def __init__(self, obstacles: tuple[Obstacle, ...], model: Any, solids: Sequence[Rectangle] = ()) -> None:
         self._all: list[Walker | Pedestrian] = []

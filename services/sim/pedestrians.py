@@ -54,7 +54,7 @@ class Pedestrian:
         self.reset()
 
     def reset(self) -> None:
-        """Back to where the path begins."""
+        """Return to the beginning of the path."""
         self.place: Point = self.obstacle.position
         self._velocity, self._clock = np.zeros(2), 0.0
         self._next, self._step = 1, 1

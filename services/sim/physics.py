@@ -36,7 +36,7 @@ Move = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 class Physics(Body):
-    """One world with its robot; `advance` runs 10 ms of it, at 500 Hz or, while nothing but bases move, at 200 Hz.
+    """A world with its robot; `advance` simulates 10 ms, at 500 Hz or, while nothing but bases move, at 200 Hz.
 
     `guests` are other robots with where they start; each is told of the world in a description (`mjcfs`) of its own,
     in which its own parts bear their own names. While nothing moves and nothing is told to, every tenth tick alone is
@@ -85,7 +85,7 @@ class Physics(Body):
         return [self, *self.guests]
 
     def reset(self) -> None:
-        """The layout of the seed, the robots where they start, everything at rest."""
+        """Set the world to its beginning: objects by the seed's layout, robots at their starts, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
         self._steps, self.model.opt.timestep, self._calm = FINE, DT / FINE, 0
         for robot, pose in zip(self.robots, self._starts, strict=True):
@@ -108,7 +108,7 @@ class Physics(Body):
     def advance(
         self, start: NDArray[np.float64], end: NDArray[np.float64], now: float = 0.0, guests: Sequence[Move] = ()
     ) -> None:
-        """Run the 10 ms from `now` [s] while the set-points (10,) of base and arm move from `start` to `end`, and those
+        """Simulate 10 ms from `now` [s] as the set-points (10,) of base and arm move from `start` to `end`, and those
         of the guests as told."""
         model, data = self.model, self.data
         moves = [(self, start, end - start), *((r, a, b - a) for r, (a, b) in zip(self.guests, guests, strict=True))]
@@ -132,7 +132,7 @@ class Physics(Body):
                     robot.contacts.step(data, now + number * DT / steps)
 
     def _rests(self) -> bool:
-        """True when nothing has moved for a while, no cause to has come, and no glance at it is due."""
+        """True when nothing has moved for CALM ticks, no input has changed, and no check, every GLANCE, is due."""
         rows = tuple(zip(self._causes, self._rested_under, strict=True))
         same = all(np.array_equal(now, was) for now, was in rows)
         if not same:
@@ -155,7 +155,7 @@ class Physics(Body):
         return state
 
     def restore(self, state: NDArray[np.float64]) -> None:
-        """Back to a snapshot of the same model."""
+        """Set the state to a snapshot of the same model."""
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         self._calm = 0
         for robot in self.robots:

@@ -1,4 +1,4 @@
-"""What the robot measures of its world: wheels, joints and lidar, as their drivers publish it."""
+"""The robot's sensors: odometry, joint states and lidar with their errors, as drivers publish them."""
 
 import math
 
@@ -36,7 +36,7 @@ SLIP = 0.1
 
 
 class Sensors:
-    """`odometry` knows where the wheels believe the base to be."""
+    """Sensors of one robot; `odometry` is what its wheels count."""
 
     def __init__(self, body: Body, seed: int, config: SimConfig, io: Io, start: Pose2) -> None:
         self._body, self._io = body, io
@@ -78,7 +78,7 @@ class Sensors:
         )
 
     def scan(self, t: float) -> None:
-        """One turn of the lidar."""
+        """Publish one scan of the lidar."""
         ranges = self._lidar.scan(self._body.model, self._body.data)
         scan = m.LaserScan(
             t=t, ranges=ranges.tobytes(), angle_increment=2 * math.pi / RAYS, range_min=RANGE_MIN, range_max=RANGE_MAX
@@ -88,7 +88,7 @@ class Sensors:
 
 # --- wheel odometry: the true motion, integrated with a constant slip, a constant veer and random noise
 class WheelOdometry:
-    """Has `believed` the base at `start`; its errors are those of the seed. All three parameters 0: exact."""
+    """Integrates `believed`, the pose by the wheels, from `start`, with errors by the seed; exact if all are 0."""
 
     def __init__(self, start: Pose2, config: SimConfig, seed: int) -> None:
         rng = self._rng = np.random.default_rng([seed, 11])
@@ -100,12 +100,12 @@ class WheelOdometry:
         self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
 
     def resume(self, true: Pose2, believed: Pose2) -> None:
-        """Go on from a known pose with what was believed there."""
+        """Go on from the true pose `true`, at which the wheels have counted `believed`."""
         self._true, self.believed = true, believed
         self._frame = compose(believed, inverse(true))
 
     def update(self, true: Pose2, sliding: bool = False) -> Pose2:
-        """The believed pose after the robot has moved to `true`, on wheels at the end of their grip if `sliding`."""
+        """The pose by the wheels after the robot has moved to `true`; `sliding`: the wheels lost their grip."""
         if self._exact:
             self.believed = compose(self._frame, true)
             return self.believed
@@ -123,7 +123,7 @@ class WheelOdometry:
 
 # --- what the arm and the hand feel of themselves: encoders, motor currents and the gripper's width, with their error
 class Proprioception:
-    """The errors of one robot, drawn from `seed`; `efforts` (n,) is the largest effort of each joint."""
+    """Errors of a robot's encoders and motor currents, by `seed`; `efforts` (n,): each joint's largest effort."""
 
     def __init__(self, seed: int, efforts: Array) -> None:
         rng = self._rng = np.random.default_rng([seed, 13])
@@ -136,7 +136,7 @@ class Proprioception:
         self._errors, self._at = np.empty((0, len(self._mean))), 0
 
     def read(self, true: Array) -> Array:
-        """What is measured (3 n + 1,) of angles [rad], speeds [rad/s], torques [N m] and a finger's force [N]."""
+        """Measured values (3 n + 1,) for true angles [rad], speeds [rad/s], torques [N m] and a finger's force [N]."""
         if self._at == len(self._errors):
             drawn = self._rng.standard_normal((BLOCK, len(self._mean)))
             self._errors, self._at = self._mean + self._deviation * drawn, 0
@@ -144,7 +144,7 @@ class Proprioception:
         return np.asarray(true + self._errors[self._at - 1])
 
     def width(self, told: float) -> float:
-        """The width [m] that the gripper tells, from the one that its motor's travel stands for.
+        """The measured width [m] of the gripper, for the one by its motor's travel.
 
         The play of the linkage changes only while the pads move, so a thing that is held keeps its width.
         """

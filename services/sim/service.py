@@ -41,7 +41,7 @@ class Reset(msgspec.Struct):
 
 
 class SimService:
-    """MuJoCo world, robot drivers and sensors."""
+    """The simulation as a service: steps the world and its robots, saves checkpoints, answers queries."""
 
     NAME = "sim"
     HZ = 100
@@ -89,7 +89,7 @@ class SimService:
         return self._speed, self._config.wait_for
 
     def _begin(self) -> None:
-        """A world has just been laid out."""
+        """Begin with a world that has just been laid out."""
         home, world = self._io.world.home, self._io.new_id(self._io.epoch)
         poses = [(home.x, home.y, home.theta), *(guest.pose for guest in self._config.guests)]
         for unit, pose in zip(self._units, poses, strict=True):
@@ -147,7 +147,7 @@ class SimService:
             self._viewer.sync()
 
     def carry(self, pose: Pose2) -> None:
-        """Put the robot elsewhere [map] at rest, as if it were carried: its wheels do not turn."""
+        """Move the robot to `pose` [map], at rest, as if carried: odometry does not change."""
         physics, believed = self.physics, self.sensors.odometry.believed
         physics.data.qpos[physics.qpos_at[:3]] = pose
         physics.data.qvel[physics.qvel_at[:3]] = 0.0

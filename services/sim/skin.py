@@ -1,4 +1,4 @@
-"""The official model's meshes as the robot's skin: they are looked at, the primitives below them go on to collide."""
+"""The official model's meshes as the robot's skin: they are drawn, while the primitives below them collide."""
 
 import xml.etree.ElementTree as ET
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is really so: for evaluators and tests, answered on `sim/truth`, read by no service."""
+"""Ground truth of the world, answered on `sim/truth` for evaluators and tests; read by no service."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from services.sim.physics import Physics
 
 
 def touching(physics: Physics, body: Body | None = None) -> tuple[dict[str, set[int]], dict[str, bool]]:
-    """Per object: the geoms of the robot that touch it, and whether anything else does."""
+    """For each object the geoms of the robot that touch it, and whether anything else does."""
     body = body or physics
     by_body = {number: name for name, number in physics.bodies.items()}
     robot: dict[str, set[int]] = {name: set() for name in physics.bodies}
@@ -30,7 +30,7 @@ def touching(physics: Physics, body: Body | None = None) -> tuple[dict[str, set[
 
 
 def holding(physics: Physics, body: Body | None = None) -> str | None:
-    """The object that both pads touch and nothing else supports."""
+    """The object that both pads touch and nothing else supports; None for an empty hand."""
     body = body or physics
     robot, other = touching(physics, body)
     left, right = body.pads

@@ -1,4 +1,4 @@
-"""One robot of the simulation on its bus: its drivers, sensors and battery, and what they publish."""
+"""One robot of the simulation: its drivers, sensors and battery, connected to its bus."""
 
 import math
 from typing import Any
@@ -24,7 +24,7 @@ SCAN_TICKS, STATE_TICKS, BATTERY_TICKS = 10, 5, 100
 
 
 class Unit:
-    """The robot `number` of a world, 0 the simulation's own. `epoch` is the simulation's for all of them."""
+    """Robot `number` of the world, 0 being the simulation's own; `epoch` is that of the simulation."""
 
     def __init__(self, config: SimConfig, io: Io, physics: Physics, number: int, epoch: str) -> None:
         self._config, self._physics, self._number, self._epoch = config, physics, number, epoch
@@ -32,7 +32,7 @@ class Unit:
         self.world = ""
 
     def begin(self, pose: Pose2, world: str) -> None:
-        """Drivers and sensors in a world that has just been laid out, the robot at `pose` [map]."""
+        """Create drivers and sensors for a world just laid out, the robot at `pose` [map], and publish the model."""
         config, io, physics, self.world = self._config, self.io, self._physics, world
         self.drivers = Drivers(config, io, self.body, pose, self.tell)
         self.sensors = Sensors(self.body, physics.seed + self._number, config, io, pose)
@@ -47,7 +47,7 @@ class Unit:
         self.tell("running")
 
     def tell(self, state: Any, detail: str = "") -> None:
-        """Publish how the simulation of this robot stands."""
+        """Publish the simulation's status."""
         status = m.SimStatus(
             state=state,
             speed=self._config.speed,
@@ -60,13 +60,13 @@ class Unit:
         self.io.publish(topics.SIM_STATUS, status)
 
     def move(self, now: float) -> tuple[Array, Array]:
-        """Hear what came, and the set-points (10,) at the begin and at the end of this tick."""
+        """Take commands; returns the set-points (10,) at the beginning and at the end of this tick."""
         if self.io.fresh:
             self.drivers.take_commands(now)
         return self.drivers.advance(self.sensors.odometry.believed, now)
 
     def publish(self, tick: int, t: float) -> None:
-        """What the robot measures after the tick that ends at `t` [s], and the state of the world."""
+        """Publish the robot's measurements and the state of the world after the tick that ends at `t` [s]."""
         io, body, data = self.io, self.body, self._physics.data
         self.sensors.feel(t)
         base = self.drivers.base

@@ -20,7 +20,7 @@ HANDLE = 0.0048
 
 
 class Face(NamedTuple):
-    """What goes into the model of one thing: its assets, its geom, and its picture by file name."""
+    """MJCF of one thing's face: its assets, its geom, and its picture by file name."""
 
     assets: str
     geom: str
@@ -35,12 +35,12 @@ class _Outline(NamedTuple):
 
 
 def has_face(spec: ObjectSpec) -> bool:
-    """Whether there is more to look at than its shape and colour."""
+    """True for an object with print or a pattern on it."""
     return bool(spec.label) or spec.pattern != "plain"
 
 
 def hidden(geoms: str) -> str:
-    """The geoms below a mesh: they collide and are not drawn."""
+    """The geoms changed so that they collide and are not drawn."""
     return geoms.replace(f'group="{GROUP}"', f'group="{HULL_GROUP}"')
 
 

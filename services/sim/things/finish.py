@@ -1,4 +1,4 @@
-"""What floors, walls and table tops are made of: pictures that repeat every metre. Pure."""
+"""Textures of floors, walls and table tops, repeating every metre. Pure."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Things that are no solid of revolution and no box: fruit, toys and tools as bodies of several geoms.
+"""Objects that are neither round nor boxes: fruit, toys and tools as bodies of several geoms.
 
 Each is drawn in a box of its own extents `size` (x, y, z), lying or standing as it is found.
 """

@@ -33,7 +33,7 @@ class Mesh:
 
 
 def joined(parts: list[Mesh]) -> Mesh:
-    """All as one mesh with one texture."""
+    """Several meshes as one, with one texture."""
     starts = np.cumsum([0, *(len(p.vertices) for p in parts[:-1])])
     return Mesh(
         np.concatenate([p.vertices for p in parts]),
@@ -43,7 +43,7 @@ def joined(parts: list[Mesh]) -> Mesh:
 
 
 def turned(outline: list[Segment], low: float, high: float, top: float) -> Mesh:
-    """The outline of points (radius, height) [m] turned about z.
+    """The solid of revolution of an outline of points (radius, height) [m] about z.
 
     The picture goes once around, and from `high` (v = `top`) down to `low` (v = 1); what is above or within has the
     colour of the picture's upper edge. A wall is seen from the side that is to the right of its direction.
@@ -112,7 +112,7 @@ def tube(path: Array, radii: Array) -> Mesh:
 
 
 def xml(name: str, mesh: Mesh) -> str:
-    """The asset of a mesh that is only to be looked at."""
+    """MJCF of the asset of a mesh that is drawn and does not collide."""
     return (
         f'<mesh name="{name}" inertia="shell" vertex="{_text(mesh.vertices, 5)}" face="{_text(mesh.faces)}" '
         f'texcoord="{_text(mesh.uv, 4)}"/>'

@@ -1,4 +1,4 @@
-"""Geoms of one object: what it is made of, how it slides, and round walls of flat pieces."""
+"""Building blocks of objects: geoms with material and friction, and round walls of flat pieces."""
 
 import math
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ def material(spec: ObjectSpec) -> str:
 
 
 def materials(specs: Iterable[ObjectSpec]) -> str:
-    """The materials of all objects that shine: a highlight as strong and as small as they are glossy."""
+    """MJCF of the materials of all glossy objects."""
     shares = {material(spec): 0.5 + spec.gloss / 2 for spec in specs if spec.gloss}
     return "".join(f'<material name="{n}" specular="{s:g}" shininess="{s:g}"/>' for n, s in sorted(shares.items()))
 

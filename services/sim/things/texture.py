@@ -1,4 +1,4 @@
-"""Pictures for the outsides of things: a ground colour, a pattern, and print. Pure."""
+"""Textures of objects: a ground colour, a pattern, and print. Pure."""
 
 from functools import cache
 
@@ -29,7 +29,7 @@ def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def rgb(colour: tuple[float, ...]) -> Rgb:
-    """Levels of a colour of shares."""
+    """A colour of shares (0 to 1) as levels (0 to 255)."""
     r, g, b = (round(255 * v) for v in colour[:3])
     return r, g, b
 
