@@ -6,7 +6,7 @@ from common.config import Config
 
 
 class CameraConfig(Config, frozen=True):
-    """What takes the pictures, how true to life, and how fine."""
+    """How pictures are rendered, with which sensor errors, and in which size."""
 
     backend: Literal["auto", "egl", "osmesa", "raycast"] = "auto"
     """`auto` takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise."""

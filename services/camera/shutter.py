@@ -1,4 +1,4 @@
-"""One picture: the world drawn as it was while the camera's sensors were exposed, and what they make of it."""
+"""Taking a picture: renders the world as it was during exposure and applies the sensors' models."""
 
 from collections.abc import Sequence
 
@@ -27,7 +27,7 @@ GAP = 0.25
 
 
 class Shutter:
-    """Lives in the worker: a renderer for the model at hand and, unless `seed` is None, the sensors' models.
+    """Takes pictures, in the worker: a renderer for the present model and, unless `seed` is None, sensor models.
 
     `mounts`: offset [m] and turn [deg] of the calibrated cameras from their drawing.
     """
@@ -38,7 +38,7 @@ class Shutter:
         self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(topics.PICTURES)}
 
     def take(self, model: m.SimModel, states: Sequence[m.SimState], request: m.CameraRequest) -> m.Rgbd:
-        """One picture, stamped with the last of the `states`; the one before says how things move.
+        """Take a picture, stamped with the last of the `states`; the state before it tells how things move.
 
         Raises:
             ValueError: the state belongs to another model.

@@ -1,4 +1,4 @@
-"""Background requests of the page, one at a time in the worker: to the supervisor, and to the brain's mission log."""
+"""Requests of the page to the supervisor and the brain's mission log, made in the worker one at a time."""
 
 from collections import deque
 from collections.abc import Callable
@@ -29,7 +29,7 @@ class Request:
 
 
 class BackgroundRequests:
-    """The processes that can be restarted and the missions of the log, refreshed while the page is open."""
+    """Keeps the restartable processes and the missions of the log, refreshed while the page is open."""
 
     def __init__(self, io: Io, supervisor: Supervisor, report: Report) -> None:
         self._io, self._supervisor, self._report = io, supervisor, report

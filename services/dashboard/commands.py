@@ -1,4 +1,4 @@
-"""What visitors do, as messages to the robot."""
+"""Translation of what visitors do into messages to the robot."""
 
 from math import atan2
 
@@ -21,7 +21,7 @@ SOURCE = "page"
 
 
 class Commands:
-    """Publishes; speech recognition follows one microphone at a time."""
+    """Publishes visitors' commands, sound of one visitor's microphone at a time."""
 
     def __init__(self, io: Io, transcript: Transcript) -> None:
         self._io, self._transcript = io, transcript
@@ -30,7 +30,7 @@ class Commands:
         self.naming = ""
 
     def words(self, do: str, text: str, t: float) -> None:
-        """A button was pressed or a line typed; what is unknown is counted."""
+        """Carry out a button or a typed line; unknown ones are counted."""
         if do == "stop":
             self._io.publish(topics.ROBOT_STOP, m.RobotStop(reason="stop button", source=SOURCE))
             self._transcript.add(t, "typed", "STOP")
@@ -48,12 +48,12 @@ class Commands:
             self._io.count_drop("page", f"{do!r}: expected stop, resume, go on, yes, no, or say or name with words")
 
     def say(self, text: str, t: float) -> None:
-        """A person typed it, so nobody needs to ask whether it was heard right."""
+        """Publish typed words as a command that needs no question whether it was heard right."""
         self._io.publish(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=self._io.new_id("page"), confirmed=True))
         self._transcript.add(t, "typed", text)
 
     def picked(self, picked: Picked, base: Pose2, state: m.BrainState | None, t: float) -> None:
-        """A click: the object, or with a name like "desk" the part of the home, gets the name that was typed; without
+        """Name the object that was clicked, or with a name like "desk" the part of the home, as was typed; without
         one the object is fetched, or the robot drives to the place, when no mission is under way."""
         ready = state is not None and state.state in m.OPEN_STATES
         if self.naming and picked.hit is not None and kind_named(self.naming) is not None:
@@ -91,7 +91,7 @@ class Commands:
         self._transcript.add(t, "typed", f"this is the {name}")
 
     def edited(self, result: m.EditResult, t: float) -> None:
-        """What came of a name for a part of the home, or of a rule, whoever told it."""
+        """Tell visitors the outcome of a name for a part of the home, or of a rule, whoever told it."""
         if not result.ok:
             self._transcript.add(t, "robot", f"{result.name} was not kept: {result.detail}")
         elif result.kind:
@@ -100,7 +100,7 @@ class Commands:
             self._transcript.add(t, "robot", f"the rule about {result.name} is kept")
 
     def taught(self, result: m.TeachResult, t: float) -> None:
-        """What came of a name, whoever taught it."""
+        """Tell visitors the outcome of a taught name, whoever taught it."""
         done = f"forgot {result.name}" if not result.label else f"the {result.label} is the {result.name} from now on"
         self._transcript.add(t, "robot", done if result.ok else f"{result.name} was not learnt: {result.detail}")
 

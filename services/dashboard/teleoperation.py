@@ -1,4 +1,4 @@
-"""The base driven from the page: only while somebody holds on, slowly, never towards what the lidar sees close by."""
+"""Driving from the page: while somebody holds a control, slowly, never towards what the lidar sees close by."""
 
 from math import hypot, isfinite, sqrt
 
@@ -38,7 +38,7 @@ class Teleoperation:
         self._moving = False
 
     def hold(self, text: str, now: float) -> None:
-        """A visitor holds on: "forward left turn", each from -1 to 1; what is no such thing is counted."""
+        """Take a visitor's control: "forward left turn", each from -1 to 1; anything else is counted."""
         try:
             x, y, turn = (float(word) for word in text.split())
             if not all(isfinite(v) and abs(v) <= 1 for v in (x, y, turn)):
@@ -51,7 +51,7 @@ class Teleoperation:
         self._wish, self._until = (x * scale, y * scale, turn * TURN), now + HOLD
 
     def step(self, now: float) -> None:
-        """Send the velocity of this moment, and one of zero when it has ended; then nothing, which means hold."""
+        """Publish the velocity while a control is held, then zero once, then nothing, which means hold."""
         io = self._io
         scan = io.latest(topics.SCAN) if io.age(topics.SCAN, now) <= STALE else None
         if now < self._until and any(self._wish) and free(io):
@@ -65,7 +65,7 @@ class Teleoperation:
 
 
 def free(io: Io) -> bool:
-    """Neither a mission nor navigation has the robot, nor the brake."""
+    """True when neither a mission nor navigation drives the robot and the brake is off."""
     sim, driving = io.latest(topics.SIM_STATUS), io.latest(topics.NAVIGATION_FEEDBACK)
     braked = sim is not None and sim.state == "stopped"
     driven = driving is not None and driving.status == "navigating"
@@ -73,7 +73,7 @@ def free(io: Io) -> bool:
 
 
 def limit(scan: m.LaserScan | None, x: float, y: float) -> float:
-    """Speed [m/s] towards (x, y) in the robot's frame from which it can stop before what the lidar sees; 0 without one.
+    """Highest speed [m/s] towards (x, y) in the robot's frame that can stop before what a scan shows; 0 without one.
 
     v = sqrt(2 a d): d is how far the nearest point in the lane is beyond the base's own room.
     """
@@ -104,7 +104,7 @@ class HandTeleoperation:
         self._leading = False
 
     def hold(self, text: str, now: float) -> None:
-        """A visitor holds on: "forward left up roll pitch yaw", each from -1 to 1, then open or close, if wished; or
+        """Take a visitor's control: "forward left up roll pitch yaw", each from -1 to 1, then perhaps open or close; or
         "home". What is no such thing is counted."""
         try:
             self._wish, self._until = _wish(text.split()), now + HOLD
@@ -112,7 +112,7 @@ class HandTeleoperation:
             self._io.count_drop("page", f"hand {text[:60]!r}: expected six numbers from -1 to 1, or home")
 
     def step(self, now: float) -> None:
-        """Send the velocity of this moment, and one of zero when it has ended; then nothing, which means stop."""
+        """Publish the velocity while a control is held, then zero once, then nothing, which means stop."""
         io, wish = self._io, self._wish
         if wish is not None and now < self._until and free(io):
             io.publish(topics.HAND_VELOCITY, wish)

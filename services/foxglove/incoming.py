@@ -1,4 +1,4 @@
-"""What visitors may ask of the robot: JSON that Foxglove's panels send, checked as what any other client sends."""
+"""Commands from Foxglove's panels: their JSON, checked and translated into the robot's messages."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -56,7 +56,7 @@ class Words(msgspec.Struct):
 
 
 class Row(NamedTuple):
-    """A message of a visitor on `name` becomes one for `topic`. `always`: also where visitors may not command.
+    """A topic `name` of visitors, translated to the robot's `topic`; `always`: also where visitors may not command.
 
     `moves`: not during a mission.
     """
@@ -78,7 +78,7 @@ def pose(io: Io, data: bytes) -> m.NavGoal:
 
 
 def words(io: Io, data: bytes) -> m.VoiceCommand:
-    """A std_msgs/String, or the robot's own message; a person typed it, so nobody asks whether it was heard right."""
+    """A command from a std_msgs/String or the robot's own message; typed, so nobody asks whether it was heard right."""
     typed = msgspec.json.decode(data, type=Words).data
     found = codec.decode(topics.VOICE_COMMAND, typed.encode() if typed else data)
     found.confirmed = True
@@ -86,7 +86,7 @@ def words(io: Io, data: bytes) -> m.VoiceCommand:
 
 
 def brake(io: Io, data: bytes) -> m.RobotStop:
-    """A stop counts whatever it says."""
+    """A stop from any message, valid or not."""
     try:
         return stop(io, msgspec.json.decode(data, type=Words).data)
     except msgspec.DecodeError:
@@ -110,7 +110,7 @@ BY_NAME = {row.name: row for row in ROWS}
 
 
 def message_of(row: Row, io: Io, data: bytes) -> m.Message:
-    """What a visitor's JSON asks for.
+    """The robot's message for a visitor's JSON.
 
     Raises:
         ValueError: not of the row's kind, or one that cannot be meant; the text is the reason.

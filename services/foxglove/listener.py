@@ -1,4 +1,4 @@
-"""What visitors do, as it comes from the SDK's threads: kept in one queue until the service's next step."""
+"""Events of visitors, queued from the SDK's threads until the service's next step."""
 
 import queue
 from collections.abc import Callable
@@ -11,7 +11,7 @@ WAITING = 256
 
 
 class Subscribed(NamedTuple):
-    """A visitor began (+1) or ended (-1) to look at a channel."""
+    """A visitor has subscribed (+1) to a channel or unsubscribed (-1)."""
 
     channel: int
     change: int
@@ -25,7 +25,7 @@ class Sent(NamedTuple):
 
 
 class Set(NamedTuple):
-    """A visitor wishes a parameter to be so; `allowed`: it is."""
+    """A visitor has set a parameter; `allowed`: it may be set."""
 
     name: str
     value: Any
@@ -33,7 +33,7 @@ class Set(NamedTuple):
 
 
 class Listener:
-    """The SDK's callbacks. `parameters` is what visitors are told; `may_set(name, value)`: what they may change."""
+    """The SDK's callbacks; `parameters`: values for visitors, `may_set(name, value)`: what they may change."""
 
     def __init__(self, parameters: dict[str, Any], may_set: Callable[[str, Any], bool]) -> None:
         self.parameters, self._may_set = parameters, may_set

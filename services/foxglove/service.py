@@ -35,7 +35,7 @@ FASTEST = 50.0
 
 
 def may_set(name: str, value: Any) -> bool:
-    """True for what visitors may change while the robot runs."""
+    """True for a parameter and value that visitors may set while the robot runs."""
     return name in LIVE and isinstance(value, (int, float)) and not isinstance(value, bool) and 0 <= value <= FASTEST
 
 
@@ -80,7 +80,7 @@ class FoxgloveService:
         io.log.info("listening", url=self.server.url, commands=config.commands)
 
     def step(self, now: float) -> None:
-        """Hear the visitors, then show them what is new of what they look at."""
+        """Carry out what visitors have done, then send them what is new on their channels."""
         self._hear()
         wanted = self._wanted()
         for topic in self.ON_DEMAND:

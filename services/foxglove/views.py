@@ -110,11 +110,11 @@ class Server:
         return Channel(out, (topic,))
 
     def draw_home(self, household: Household, t: float) -> None:
-        """The home as the robot was told of it."""
+        """Send the drawing of the home as the robot was told of it."""
         self._draw(drawing.home(household), t)
 
     def draw_robot(self, solids: list[Shape], t: float) -> None:
-        """Show the robot's links."""
+        """Send the drawing of the robot's links."""
         self._draw(drawing.robot(solids), t)
 
     def draw_objects(self, known: m.WorldObjects, gone: set[str]) -> None:
@@ -125,7 +125,7 @@ class Server:
         self.scene.out.log(update, log_time=nanoseconds(t))
 
     def move(self, poses: list[FramePose], t: float) -> None:
-        """Frames as they stand at robot time `t` [s]."""
+        """Send the moving frames at robot time `t` [s]."""
         self.tf.out.log(drawing.frames(poses), log_time=nanoseconds(t))
 
     def tell_time(self, t: float) -> None:
@@ -133,11 +133,11 @@ class Server:
         self._server.broadcast_time(nanoseconds(t))
 
     def tell_parameters(self, values: dict[str, Any]) -> None:
-        """Values as they are now, to whoever follows them."""
+        """Send the present parameters to visitors who subscribe to them."""
         self._server.publish_parameter_values([foxglove.Parameter(n, value=v) for n, v in values.items()])
 
     def warn(self, words: str) -> None:
-        """A line that every visitor sees."""
+        """Show a warning to every visitor."""
         self._server.publish_status(words, foxglove.StatusLevel.Warning)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""What ROS peers may ask of the robot: one row for each ROS topic, checked as what any other client sends."""
+"""Commands from ROS peers: one row for each ROS topic, checked and translated into the robot's messages."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -26,7 +26,7 @@ class Row(NamedTuple):
 
 
 def words(topic: Topic[Any]) -> Callable[[Io, Any], m.Message]:
-    """Words, or the message as JSON, as Zenoh clients send them."""
+    """A message from a String: bare words, or JSON as Zenoh clients send it."""
 
     def convert(io: Io, message: Any) -> m.Message:
         found: m.Message = codec.decode(topic, message.data.encode())
@@ -93,7 +93,7 @@ ROWS = (
 
 
 def message_of(row: Row, types: Types, io: Io, payload: bytes) -> m.Message:
-    """What a peer's payload asks for, with an id of its own where it has none.
+    """The robot's message for a peer's payload, with a new id where it has none.
 
     Raises:
         ValueError: no message of the row's type, or one that cannot be meant; the text is the reason.

@@ -1,4 +1,4 @@
-"""What the robot publishes, as ROS messages: one row for each ROS topic."""
+"""Translation of the robot's messages to ROS: one row for each ROS topic."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -39,7 +39,7 @@ class Row(NamedTuple):
 
 
 def field(name: str) -> Convert:
-    """The bare words of a field, as the designs have them."""
+    """A converter that puts one text field of a message into a String."""
     return lambda types, message: types.text(str(getattr(message, name)))
 
 

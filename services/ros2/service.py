@@ -1,4 +1,4 @@
-"""A ROS 2 node without ROS: what the robot publishes, for rmw_zenoh's tools, and what they may ask of it."""
+"""A ROS 2 node without ROS: publishes the robot's messages for rmw_zenoh's tools and takes their commands."""
 
 import queue
 from collections import deque
@@ -33,7 +33,7 @@ ALL = tuple(dict.fromkeys((*(row.topic for row in outgoing.ROWS), *TF_TOPICS)))
 
 
 def describe(mjcf: str) -> tuple[str, list[FramePose]]:
-    """A robot's description as URDF, and the frames of it that do not move.
+    """A robot's description as URDF, and its fixed frames.
 
     Raises:
         ValueError: it cannot be said in URDF.
@@ -95,7 +95,7 @@ class Ros2Service:
             self._lost += 1
 
     def step(self, now: float) -> None:
-        """Pass on what peers sent, then what they wait for."""
+        """Pass on the messages of peers, then publish for those who subscribe."""
         self._take_in()
         wanted = self._wanted()
         for topic in ALL:

@@ -1,4 +1,4 @@
-"""What speech works out of installed packages once, which takes time and memory: networks and dictionaries as files.
+"""Files that speech prepares once from installed packages: rebuilt networks and mapped dictionaries.
 
 They lie beside the weights (`common/speech_weights.py`). `python -m services.speech.prepared` works them out
 beforehand, as for an image whose files are read-only.
@@ -29,7 +29,7 @@ SOURCES = (
 
 @contextmanager
 def prepared() -> Iterator[Path]:
-    """The folder of the files; one that goes with the block where none can be kept, for what it had is in use by then.
+    """The folder with the prepared files, as a context; a temporary one where none can be kept.
 
     Raises:
         WeightsError: the weights are not there, or the files could not be worked out.

@@ -10,7 +10,7 @@ from common.sound import RATE, Samples
 
 
 class Speakers:
-    """The default sound card."""
+    """The speakers of the machine's default sound card."""
 
     def __init__(self) -> None:
         self._card = sound_card("speakers")
@@ -35,7 +35,7 @@ class Microphone:
         self._stream.start()
 
     def take(self) -> list[Samples]:
-        """What was heard since the last call."""
+        """The samples since the last call."""
         found = []
         while not self._heard.empty():
             found.append(np.frombuffer(self._heard.get(), np.int16))
@@ -46,7 +46,7 @@ class Microphone:
 
 
 def sound_card(what: str) -> Any:
-    """The sounddevice module.
+    """Import and return the module sounddevice.
 
     Raises:
         StartError: it or its library is missing, with the command that installs it.

@@ -1,4 +1,4 @@
-"""Where sound comes from: clients, the microphone, or a recording in its place."""
+"""Sources of sound: clients, the microphone, or a recording in its place."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from services.speech.speak.player import CHUNK
 
 
 class SoundSources:
-    """All that may be heard, at 16 kHz.
+    """All sources together, at 16 kHz.
 
     Raises:
         AudioError: the configured recording cannot be read.
@@ -25,7 +25,7 @@ class SoundSources:
         self._microphone = Microphone() if config.microphone else None
 
     def take(self, listening: bool) -> list[tuple[Samples, bool]]:
-        """What arrived since the last step, and whether it is meant for the robot.
+        """The samples since the last step, each piece with whether it is meant for the robot.
 
         `listening`: the brain listens; only then the recording goes on.
         """
@@ -49,6 +49,6 @@ class SoundSources:
         return found
 
     def close(self) -> None:
-        """Let go of the microphone."""
+        """Close the microphone."""
         if self._microphone:
             self._microphone.close()

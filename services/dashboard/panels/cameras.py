@@ -1,4 +1,4 @@
-"""The cameras' pictures, asked for only while somebody looks, with what the robot believes drawn in."""
+"""The panel of camera pictures, requested only while somebody looks, with the known objects drawn in."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ COLOUR, BACK = (255, 214, 10), (0, 0, 0)
 
 
 class Cameras:
-    """Shows the pictures of the cameras that visitors want to see."""
+    """Requests and shows the pictures of the cameras that visitors have chosen."""
 
     def __init__(self, config: DashboardConfig, io: Io, panels: Panels) -> None:
         self._config, self._io, self._panels = config, io, panels
@@ -31,7 +31,7 @@ class Cameras:
         self._shown: dict[str, float] = {}
 
     def look(self, now: float, base: Pose2) -> None:
-        """Show what came, and ask for more."""
+        """Show the pictures that have come, and request the next ones."""
         world = self._io.latest(topics.WORLD_OBJECTS)
         wanted = {name: topic for name, topic in topics.PICTURES.items() if self._panels.wanted(name)}
         for name, topic in wanted.items():

@@ -1,4 +1,4 @@
-"""The curves of the page: what each is of, and which samples go into it."""
+"""The curves of the page, and the samples that go into them."""
 
 from math import degrees
 

@@ -1,4 +1,4 @@
-"""How far the robot is from where it is told to be."""
+"""Tracking errors of base and arm."""
 
 from collections.abc import Sequence
 

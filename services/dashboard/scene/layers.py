@@ -1,4 +1,4 @@
-"""What the robot thinks, laid over the 3-D view: costmap, grasp candidates, and the objects that it asks about."""
+"""Overlays of the 3-D view: costmap, grasp candidates, and the objects that the robot asks about."""
 
 from typing import Any
 
@@ -61,7 +61,7 @@ def forks(candidates: list[m.GraspCandidate]) -> tuple[NDArray[np.float32], NDAr
 
 
 class Layers:
-    """Draws into a viser server."""
+    """Draws the overlays into a viser server."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._scene = server.scene

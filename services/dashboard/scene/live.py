@@ -1,4 +1,4 @@
-"""The 3-D view of the page as it is now: flat, robot, objects, and what navigation and manipulation think."""
+"""The 3-D view kept up to date from the bus: flat, robot, objects, and plans of navigation and manipulation."""
 
 from functools import partial
 
@@ -22,7 +22,7 @@ GRABBING = ("reach", "aim", "grasp")
 
 
 class LiveScene:
-    """Follows the bus; `base` is where the robot believes to be."""
+    """Updates the view from messages; `base` is the estimated pose of the robot."""
 
     def __init__(self, server: viser.ViserServer, io: Io, panels: Panels, ghost_after: float) -> None:
         self._io, self._panels, self._ghost_after = io, panels, ghost_after
@@ -93,6 +93,6 @@ class LiveScene:
 
     @property
     def off_path(self) -> float:
-        """How far the base is from its path [m], while it drives along one."""
+        """Distance [m] of the base from its path, 0 while it follows none."""
         driving = self._io.latest(topics.NAVIGATION_FEEDBACK)
         return off_path(self._path, self.base) if driving is not None and driving.status == "navigating" else 0.0

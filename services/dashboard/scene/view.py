@@ -1,4 +1,4 @@
-"""The 3-D view: the model's drawing in viser, moved by what the robot says of itself."""
+"""The 3-D view: the model's meshes in viser, posed by the robot's joints and pose estimate."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ FRUSTUM = 0.25
 
 
 class View:
-    """Draws into a viser server; every call is from the service's thread."""
+    """Draws flat, robot and objects into a viser server; to be called from the service's thread."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server, self._scene = server, server.scene
@@ -105,7 +105,7 @@ class View:
 
     # --- the robot
     def pose(self, joints: dict[str, float], base: Pose2, width: float) -> None:
-        """Put the links where the joints say; `base` in frame map, `width` of the gripper [m]."""
+        """Pose the robot by its joints; `base` is its pose [map], `width` the gripper's [m]."""
         q = {**joints, "base_x": base[0], "base_y": base[1], "base_yaw": base[2]}
         if self.drawing.hand is not None:
             q |= zip(self.drawing.hand.joints, self.drawing.hand.posture(width).tolist(), strict=True)

@@ -1,4 +1,4 @@
-"""What visitors of the page do."""
+"""Events from visitors of the page."""
 
 import asyncio
 from dataclasses import dataclass

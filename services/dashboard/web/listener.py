@@ -45,7 +45,7 @@ def listen(config: DashboardConfig) -> socket.socket:
 
 @contextlib.contextmanager
 def guarded(secret: str) -> Iterator[None]:
-    """Inside, viser's server is made such that it answers only to requests with our key in the header."""
+    """While this context lasts, viser's servers are created to answer only requests with our key in the header."""
     serve: Any = websockets.asyncio.server.serve
 
     def with_key(handler: Any, *where: Any, **options: Any) -> Any:

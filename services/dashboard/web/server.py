@@ -71,16 +71,16 @@ class Web:
 
     # --- the service's side; any thread
     def say(self, kind: str, message: object) -> None:
-        """Tell every page; the newest of each kind is also told to a page that opens later."""
+        """Send a text to every page; the newest of each kind also goes to pages that open later."""
         text = msgspec.json.encode({"kind": kind, "value": message}).decode()
         self._loop.call_soon_threadsafe(self.visitors.tell, kind, text)
 
     def play(self, samples: bytes, rate: int) -> None:
-        """Let every page play int16 samples."""
+        """Have every page play int16 samples."""
         self._loop.call_soon_threadsafe(self.visitors.spread, rate.to_bytes(4, "little") + samples)
 
     def answer(self, asked: Asked, page: str) -> None:
-        """Give a visitor the page that was asked for; "" for none."""
+        """Answer a visitor who asked for a mission's page; "" for none."""
         self._loop.call_soon_threadsafe(_settle, asked.answer, page)
 
     @property
@@ -155,7 +155,7 @@ def _settle(future: "asyncio.Future[str]", page: str) -> None:
 
 # --- viser's stream, passed on from its own server on a port that answers nobody else
 async def proxied(request: web.Request, session: ClientSession, port: int, secret: str) -> web.StreamResponse:
-    """A visitor's WebSocket to viser's at `port`, until either closes."""
+    """Connect a visitor's WebSocket to viser's at `port`, until either closes."""
     wanted = [p.strip() for p in request.headers.get("Sec-WebSocket-Protocol", "").split(",") if p.strip()]
     outer = web.WebSocketResponse(protocols=wanted, heartbeat=20.0, compress=False, max_msg_size=VIEW_LIMIT)
     await outer.prepare(request)

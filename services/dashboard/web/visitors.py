@@ -1,4 +1,4 @@
-"""The pages that are open: the state to them, words and sound from them. All of it runs in the web server's loop."""
+"""Connections of the open pages: texts and sound to them, events from them. Runs in the web server's loop."""
 
 import asyncio
 import contextlib
@@ -16,7 +16,7 @@ MAX_CHUNK = 64 * 1024
 
 
 class Visitors:
-    """One WebSocket for each open page; what visitors do goes to `told`."""
+    """Keeps a WebSocket for each open page; events of visitors go to `told`."""
 
     def __init__(self, told: Callable[[Event], None]) -> None:
         self._told = told
@@ -27,7 +27,7 @@ class Visitors:
         return len(self._open)
 
     async def serve(self, request: web.Request) -> web.StreamResponse:
-        """One visitor, from opening to closing."""
+        """Serve one visitor's connection from opening to closing."""
         socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=MAX_CHUNK, compress=False)
         await socket.prepare(request)
         outbox: asyncio.Queue[str | bytes] = asyncio.Queue(SEND_QUEUE)
@@ -51,7 +51,7 @@ class Visitors:
         return socket
 
     def tell(self, kind: str, text: str) -> None:
-        """Send a text to every page, and to those that open before there is a newer one of this kind."""
+        """Send a text to every page, and to those that open before there is a newer text of this kind."""
         self._last[kind] = text
         self.spread(text)
 

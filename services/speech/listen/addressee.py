@@ -1,4 +1,4 @@
-"""Addressee detection: is an utterance meant for the robot, and what follows from what was recognised in it. Pure."""
+"""Addressee detection: whether an utterance is meant for the robot, and what follows from it. Pure."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -39,7 +39,7 @@ def scope(context: UtteranceContext, over: bool) -> Scope:
 def consequence(
     recognition: Recognition, interrupt: Action | None, asked: Scope, context: UtteranceContext
 ) -> Consequence:
-    """What follows from an utterance recognised with the grammar `asked`; `interrupt` is stop or cancel if it says so.
+    """What follows from an utterance recognised with the grammar `asked`; `interrupt`: stop or cancel if it is one.
 
     `again`: the robot was addressed but did not understand; `mistaken`: it only seemed to be addressed. A cancel that
     answers the brain's listening is the answer. To a robot that was addressed a stop that was perhaps heard among all

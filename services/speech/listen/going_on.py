@@ -1,4 +1,4 @@
-"""What counts where somebody goes on after what could stand alone. Pure."""
+"""Recognition of utterances with a pause in them, after which somebody goes on. Pure."""
 
 from dataclasses import replace
 
@@ -13,14 +13,14 @@ AS_LIKELY = 0.5
 
 
 def rank(found: Recognition) -> int:
-    """How well something was understood: 2 for what is done at once, 1 for what is asked about, 0 for no command."""
+    """How well a command was understood: 2 if it is done at once, 1 if it is asked about, 0 if it is none."""
     if found.verdict not in ("accept", "ask") or not found.text or found.mistaken:
         return 0
     return 2 if found.verdict == "accept" and found.confidence >= SURE else 1
 
 
 def whole(first: Recognition, found: Recognition) -> Recognition:
-    """What was said by somebody who went on after what was understood `first`, as all of it was `found`.
+    """The recognition of an utterance with a pause: `first` is of the part before it, `found` of the whole.
 
     Where that is doubtful it is asked about, with the first part as an alternative: others may have talked. The first
     part stands where all of it is no command.

@@ -1,4 +1,4 @@
-"""Loudness of what the microphone hears: how quiet it is, and which voices are in the background."""
+"""Loudness of the microphone's sound: automatic gain, and the level of background voices."""
 
 from collections import deque
 from itertools import islice
@@ -32,7 +32,7 @@ LOUDER = 6.0
 
 
 class Gain:
-    """Amplifies a stream of frames by how loud its loudest was lately; sounds as loud as they should be it leaves."""
+    """Amplifies a stream of frames whose loudest of late is too quiet; leaves others as they are."""
 
     def __init__(self) -> None:
         self._peak = LOUD * FULL_SCALE
@@ -44,7 +44,7 @@ class Gain:
 
 
 class BackgroundVoices:
-    """How loud voices are that have been going on for seconds, as of a television or of guests who talk.
+    """Level of voices that go on for seconds, as of a television or of guests who talk.
 
     Only who is louder speaks to the robot. A command is over before it counts itself.
     """
@@ -54,7 +54,7 @@ class BackgroundVoices:
         self._levels: deque[float] = deque(maxlen=BACK + SPAN)
 
     def push(self, power: float, voiced: bool) -> float:
-        """By how much a frame of that mean power is louder than the background [dB], with those just before it;
+        """By how much a frame of mean power `power`, with those just before it, is louder than the background [dB];
         infinite without voices there."""
         self._powers.append(power)
         level = 10 * float(np.log10(max(sum(self._powers) / len(self._powers), 1.0)))

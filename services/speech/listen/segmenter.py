@@ -1,4 +1,4 @@
-"""A stream of sound cut into utterances; the wake word is looked for in each while it lasts."""
+"""Segmentation of a stream of sound into utterances, with wake word detection in each while it lasts."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class Segment:
 
 
 class Segmenter:
-    """`push` sound, get the utterances that pause or end in it."""
+    """Cuts sound into utterances: `push` takes samples and returns those that pause or end in them."""
 
     def __init__(self, end_silence: float, max_utterance: float, pause: float, short: float, wake: bool) -> None:
         self._detector = VoiceDetector()
@@ -54,7 +54,7 @@ class Segmenter:
             self._wake = WakeWord()
 
     def push(self, samples: Samples) -> list[Segment]:
-        """What pauses or ends in these 16 kHz samples (n,)."""
+        """Take 16 kHz samples (n,); returns the utterances that pause or end in them."""
         found = []
         stream = np.concatenate([self._rest, samples])
         usable = len(stream) // FRAME * FRAME

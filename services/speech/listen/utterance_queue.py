@@ -1,4 +1,4 @@
-"""The queue of utterances from segmentation to recognition, each with the grammar that its circumstances ask for."""
+"""The queue of utterances from segmentation to recognition, each with the grammar for its circumstances."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -47,7 +47,7 @@ class PendingUtterance:
     samples: Samples
 
     def goes_on(self, began: float) -> bool:
-        """Is what was said from then on the rest of this utterance, unless that asks to stop?"""
+        """True when sound from time `began` [s] on counts as the rest of this utterance, which is no stop or answer."""
         if self.scope == "interrupt" or not self.ended < began <= self.ended + PATIENCE:
             return False
         found = self.job.result()
@@ -55,7 +55,7 @@ class PendingUtterance:
 
 
 class UtteranceQueue:
-    """`push` sound, `take` what was recognised. The wake word opens a window for the utterance after it.
+    """Takes sound by `push` and gives recognised utterances by `take`; the wake word opens a window for the next one.
 
     What begins soon after an utterance that was `keep`t unfinished, or before it was taken, is one with it: "bring me
     ... the red mug".
@@ -117,7 +117,7 @@ class UtteranceQueue:
         self._unfinished, self._unfinished_until = utterance.samples, now + PATIENCE
 
     def abandoned(self, now: float) -> bool:
-        """True once when nobody goes on with an utterance that was kept, and nobody speaks."""
+        """True once, when a kept utterance was not continued in time and nobody speaks."""
         if not len(self._unfinished) or now < self._unfinished_until:
             return False
         if self.busy and self._began <= self._unfinished_until:
@@ -126,7 +126,7 @@ class UtteranceQueue:
         return not self.busy
 
     def settle(self, utterance: PendingUtterance) -> None:
-        """Drop what was said before and in the same breath: what this utterance asked for is done."""
+        """Drop what was said before this utterance and in the same breath: what it asked for is done."""
         self._pending = deque(u for u in self._pending if u.began > utterance.began)
         self._settled = self._settled or utterance.began == self._began
 
@@ -151,7 +151,7 @@ class UtteranceQueue:
                 self._submit(segment, now, key)
 
     def take(self, now: float) -> PendingUtterance | None:
-        """The next utterance that is through recognition and waits for nothing more, its context as it is now."""
+        """The next utterance that was recognised and is not waiting for its rest, with its context as it is now."""
         for utterance in self._pending:
             if not utterance.job.poll(now):
                 return None
@@ -165,13 +165,13 @@ class UtteranceQueue:
         return utterance
 
     def _waits(self, utterance: PendingUtterance, now: float) -> bool:
-        """Does somebody go on with this utterance, or might he, as it will be asked about?"""
+        """True while somebody goes on with this utterance, or may do so, as it will be asked about."""
         if self._segmenter.speaking and now - self._began < REST and utterance.goes_on(self._began):
             return True
         return rank(utterance.job.result()) < 2 and now < utterance.ended + DOUBT and utterance.goes_on(now)
 
     def _update_context(self, now: float, addressed: bool, speaking: bool, listening: bool) -> None:
-        """Keep the circumstances of the utterance under way: how it began, and what came since."""
+        """Update the circumstances of the utterance under way: how it began, and what has come since."""
         old, config = self._context, self._config
         if not self._segmenter.speaking:
             self._began, self._settled = now, False
@@ -189,7 +189,7 @@ class UtteranceQueue:
         )
 
     def _submit(self, segment: Segment, now: float, key: tuple[str, int]) -> None:
-        """Hand a segment to recognition, unless it can say nothing new."""
+        """Submit a segment to recognition, unless its recognition can bring nothing new."""
         config, context = self._config, self._context
         if segment.wake >= config.wake_threshold and not context.speaking and not context.woken:
             self.open_window(now)
@@ -218,7 +218,7 @@ class UtteranceQueue:
         self._pending.append(PendingUtterance(job, asked, context, key, self._began, now, samples))
 
     def _before(self, segment: Segment, context: UtteranceContext, now: float) -> tuple[Samples, Recognition | None]:
-        """The sound of the utterance that a segment goes on with, no more of it than an utterance may be long, and what
+        """The sound of the utterance that a segment continues, cut to the longest that one may be, and what
         was recognised in it if that could stand alone."""
         if not (segment.over and context.meant):
             return NOTHING, None

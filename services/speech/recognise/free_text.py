@@ -1,4 +1,4 @@
-"""The grammar's sentence or the free transcription: what counts as said. Pure."""
+"""Choice between the grammar's sentence and the free transcription as what was said. Pure."""
 
 from collections.abc import Collection, Container
 from dataclasses import replace
@@ -88,7 +88,7 @@ def without_itself(found: Recognition) -> Recognition:
 
 
 def as_heard(found: Recognition, config: SpeechConfig) -> Recognition | None:
-    """What was no command, in the words of its transcription, for somebody who knows more; None if hardly heard."""
+    """An utterance that is no command by its transcription, for the brain to judge; None if it was hardly heard."""
     text = _plain(found.free, config)
     if found.verdict == "silence" or found.certainty < config.certain or not text:
         return None
@@ -96,7 +96,7 @@ def as_heard(found: Recognition, config: SpeechConfig) -> Recognition | None:
 
 
 def cost(text: str, names: Container[str], config: SpeechConfig) -> float:
-    """Cost of a transcription before anything was heard, a negative log-probability."""
+    """Prior cost of a transcription, the negative logarithm of its probability before anything is heard."""
     return COSTS[understood(_plain(text, config), names)]
 
 
@@ -106,7 +106,7 @@ def _plain(text: str, config: SpeechConfig) -> str:
 
 
 def _breaks_off(free: str, found: Recognition) -> bool:
-    """Was the beginning of a sentence heard, more plainly than the whole one that the grammar makes of it?"""
+    """True when the beginning of a sentence was heard more plainly than the whole one that the grammar has for it."""
     words = tuple(free.replace(",", "").split())
     needs_more = CLOSED if words and is_asked(words) else OPEN
     return needs_more.issuperset(words[-1:] or [""]) and found.certainty >= max(PLAIN, found.confidence)

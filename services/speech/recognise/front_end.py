@@ -55,7 +55,7 @@ def prepare(audio: Array, detector: VoiceDetector) -> PreparedUtterance | None:
 
 
 class FrontEnd:
-    """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
+    """Recognition from samples to verdict; loads models at construction, so it is made in the worker."""
 
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
         self._detector, self._config = VoiceDetector(), config
@@ -63,7 +63,7 @@ class FrontEnd:
         self._recogniser = Recogniser(config, found, lambda text: cost(text, self._names, config))
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
-        """What 16 kHz int16 samples (n,) say, without the wake word, for which its detector gave a score."""
+        """Recognise 16 kHz int16 samples (n,); `wake` is the wake word detector's score for them."""
         utterance = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
         if utterance is None:
             return Recognition("", "silence", 0.0)
@@ -74,6 +74,6 @@ class FrontEnd:
         return without_itself(freely(found, self._names, self._config))
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
-        """Listen for the names of this household, and for these of things as well."""
+        """Add the names of this household, and these names of things, to the grammars."""
         self._recogniser.learn(household, names)
         self._names = known_names(self._config, household, names)

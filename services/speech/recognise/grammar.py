@@ -1,4 +1,4 @@
-"""What can be said: patterns over words, compiled to an automaton over characters.
+"""The command grammar: patterns over words, compiled to an automaton over characters.
 
 Patterns use `(a | b)`, `[optional]` and `<part>`; a line `name = pattern` defines a part, several lines for one
 name are alternatives, a line without a name is a sentence.
@@ -44,7 +44,7 @@ class Grammar:
 
     # --- walking
     def step(self, state: State, character: str) -> State:
-        """The state after one character; empty when no sentence goes on like that."""
+        """The state after one more character; empty when no sentence continues like that."""
         key = state, character
         found = self._steps.get(key)
         if found is None:
@@ -53,7 +53,7 @@ class Grammar:
         return found
 
     def forget_walks(self) -> None:
-        """Let go of the states that were found so far; they are found anew."""
+        """Free the memory of the states found so far; they are found anew when they are needed."""
         self._steps.clear()
 
     def walk(self, text: str) -> State:

@@ -70,7 +70,7 @@ class PreparedUtterance:
 
 
 class Recogniser:
-    """What turns an utterance into a command: Moonshine base-en under the grammar of a scope.
+    """Turns utterances into commands: Moonshine base-en under the grammar of a scope.
 
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
     verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
@@ -88,7 +88,7 @@ class Recogniser:
         self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
-        """Listen for these names of things from now on, beside what the configuration and the household have."""
+        """Add names of things to the grammars, beside those of the configuration and the household."""
         found = grammars(self._config, household, names)
         self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 

@@ -1,4 +1,4 @@
-"""Hypothesis scoring: which of the sentences that the grammar allows was said, and how sure that is. Pure."""
+"""Hypothesis scoring: the likeliest of the grammar's sentences, and how sure it is. Pure."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -120,7 +120,7 @@ def _share(chosen: S, sentences: list[S], worth: list[float]) -> float:
 
 
 def meant(text: str) -> tuple[str, ...]:
-    """The words of a transcription that tell it from others."""
+    """The words of a transcription that distinguish its meaning from others."""
     return tuple(word for word in normalise(text).split() if word not in DETERMINERS and word != "please")
 
 

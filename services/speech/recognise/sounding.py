@@ -1,4 +1,4 @@
-"""Misheard words by their sound: `bring me the read mugg` as `bring me the red mug`. Pure.
+"""Correction of misheard words by their sound: `bring me the read mugg` to `bring me the red mug`. Pure.
 
 Editex, of J. Zobel and P. Dart, "Phonetic String Matching: Lessons from Information Retrieval", SIGIR 1996: an edit
 distance in which letters of one group sound alike.
@@ -24,7 +24,7 @@ MOST = 2
 
 
 def resounded(words: list[str], known: Container[str], heard: Iterable[str], near: float = NEAR) -> list[str] | None:
-    """The words with each that is not `known` exchanged for the one of those that may be `heard` nearest in sound.
+    """The words with each one that is not `known` replaced by the one of `heard` that is nearest in sound.
 
     None where nothing is exchanged, where a word sounds like none or like two of them, and where too many are unknown.
     """
@@ -47,7 +47,7 @@ def _nearest(word: str, known: frozenset[str], near: float) -> str | None:
 
 @cache
 def editex(a: str, b: str) -> int:
-    """How differently two words sound: 0 the same, 2 for each letter that is another."""
+    """Phonetic distance of two words: 0 for the same, up to 2 for each letter that differs."""
     rows = [[0]]
     for j in range(len(b)):
         rows[0].append(rows[0][-1] + _step(b[j - 1] if j else "", b[j]))

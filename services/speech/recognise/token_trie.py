@@ -88,7 +88,7 @@ class TokenTrie:
 
 
 class AnyTokens:
-    """Every token may follow on every other one, and a sentence end anywhere: what is said without a grammar."""
+    """The grammar that allows every token everywhere, for transcription without a grammar."""
 
     start: State = frozenset()
 

@@ -1,4 +1,4 @@
-"""The words and the wake word in what was transcribed. Pure."""
+"""Normalisation of transcriptions, and removal of the wake word from them. Pure."""
 
 import re
 from collections.abc import Iterable

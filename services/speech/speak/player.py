@@ -26,14 +26,14 @@ class TtsPlayer:
         self.saying = ""
 
     def say(self, text: str) -> None:
-        """Begin; what was being said is broken off."""
+        """Begin a sentence; one that is being said is broken off."""
         self.stop()
         voice = self._voice = self._voice or self._io.submit(Voice)
         self.saying = text
         self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
 
     def step(self, now: float) -> bool:
-        """True when the last of it has been said in this step."""
+        """Play the next tenth of a second; True when the sentence has ended in this step."""
         if self._synthesis is None:
             return False
         if not len(self._sound):
@@ -52,7 +52,7 @@ class TtsPlayer:
         return last
 
     def stop(self) -> None:
-        """Silence, at once."""
+        """Break off the sentence, at once."""
         self._synthesis, self.saying = None, ""
         self._sound = np.zeros(0, np.int16)
         if self._speakers:

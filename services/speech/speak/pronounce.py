@@ -1,4 +1,4 @@
-"""Hibari's words to sounds with its dictionaries mapped, and its default voice in a session of ours."""
+"""Hibari's pronunciation with memory-mapped dictionaries, and its voice in an onnxruntime session of ours."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -38,7 +38,7 @@ SAMPLE_RATE = int(hibari.SAMPLE_RATE)
 
 
 class Pronunciation(G2P):  # type: ignore[misc]
-    """As the library's own, for its American voices; it is not asked to load its dictionaries."""
+    """The library's own pronunciation for American voices, without loading its dictionaries."""
 
     def __init__(self, folder: Path) -> None:
         self._oov, self.unk, self.british = None, "", False
