@@ -1,4 +1,4 @@
-"""One scenario as data: everything that a run needs and that a seed decides."""
+"""A scenario as data: all that a run needs, as drawn by its seed."""
 
 from typing import Literal
 
@@ -23,7 +23,7 @@ Cause = str
 
 
 class Line(msgspec.Struct, frozen=True):
-    """Something the person says unasked.
+    """A sentence that the simulated user says unasked.
 
     `when` is `ready`, `ended` (after a mission) or a state of the brain; `after` seconds of robot time pass first.
     `goal` is what this line's own mission should bring about, against which its claims are held; None: the case's.
@@ -38,7 +38,7 @@ class Line(msgspec.Struct, frozen=True):
 
 
 class Speaker(msgspec.Struct, frozen=True):
-    """Who speaks: recordings of sentences (16 kHz int16 samples), the robot's own voice at `pace` for all others.
+    """The user's voice: recordings of sentences (16 kHz int16 samples), else the robot's own voice at `pace`.
 
     `room`: echoes and the hum of a room in place of white noise.
     """
@@ -50,7 +50,7 @@ class Speaker(msgspec.Struct, frozen=True):
 
 
 class TimedFault(msgspec.Struct, frozen=True):
-    """What happens `after` seconds from when the brain was first in `state`.
+    """A fault that is injected `after` seconds from when the brain was first in `state`.
 
     The service's process is killed, and started again after `back_after` seconds; or it hangs for `seconds`. The
     simulation goes on from its checkpoint. `router`: nobody hears anybody for `seconds`. `host`: with `jump`,
@@ -68,7 +68,7 @@ class TimedFault(msgspec.Struct, frozen=True):
 
 
 class Showing(msgspec.Struct, frozen=True, kw_only=True):
-    """A thing is shown to the robot and given a `name` before the case, in a `scene` of its own laid out by `seed`.
+    """A teaching before the case: an object is named `name`, in another `scene` laid out by `seed`.
 
     With a `sentence`, or without one by a click on the map `at` (x, y, z) [m].
     """
@@ -125,11 +125,11 @@ class Case(msgspec.Struct, kw_only=True):
 
     @property
     def goal(self) -> Goal:
-        """What should be so at the end."""
+        """The goal at the end of the case."""
         return Goal(self.wants, self.effects)
 
     def goal_of(self, line: Line) -> Goal:
-        """What a claim after this line is held against; none is true where nothing should be done."""
+        """The goal that claims after this line are held against; empty, so none is true, if nothing is to be done."""
         if line.goal is not None:
             return line.goal
         return self.goal if self.expect in ("delivered", "shown", "reported") else Goal()
@@ -141,7 +141,7 @@ class Case(msgspec.Struct, kw_only=True):
 
 
 class Observed(msgspec.Struct, kw_only=True):
-    """What the examiner saw of one case, before it is judged.
+    """What the examiner observed in one case, before it is judged.
 
     `claimed`: the last outcome, `failed_at`, `code` and `explained` the stage, code and spoken words of its failure;
     `claims`: every success announced at any time, held against physics as it was then;

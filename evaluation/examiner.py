@@ -1,4 +1,4 @@
-"""The examiner takes part in the lockstep like any service: plays the person, watches physics, ends the case."""
+"""The examiner, a participant of the lockstep: plays the user, observes physics, ends the case."""
 
 from collections import deque
 from typing import Any
@@ -24,7 +24,7 @@ QUIET = 40.0
 
 
 class Examiner:
-    """`done` once the case is over; then `observed` holds what was seen. `examiner_of` gives it its case."""
+    """Runs one case; once it is `done`, `observed` holds what was seen. `examiner_of` makes the class for a case."""
 
     NAME = "examiner"
     HZ = 20
@@ -93,7 +93,7 @@ class Examiner:
             self._dialogue.hear(saying, now, self._onlooker.shown)
 
     def follow(self, now: float) -> None:
-        """Take what the brain says of its mission."""
+        """Take a message of `brain/state`."""
         seen = self.observed
         for status in self._io.take_all(topics.SYSTEM_STATUS):
             self._observer.status(now, status)
@@ -121,7 +121,7 @@ class Examiner:
             self._when.setdefault("ready", now)
 
     def note_fault(self, report: FaultReport) -> None:
-        """A fault took effect; the first starts the clock of the recovery."""
+        """Note that a fault took effect; the first starts the clock of the recovery."""
         self.observed.fault_reports.append(report)
         if self.observed.fault_at is None:
             self.observed.fault_at, self._step_at_fault = report.t, self._at
@@ -178,7 +178,7 @@ class Examiner:
         return quiet
 
     def abort(self, now: float, why: str) -> None:
-        """The run broke: conclude with what was seen."""
+        """End the case after an error of the run, with what was observed so far."""
         self.observed.crash = why
         self._conclude(now)
 

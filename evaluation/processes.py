@@ -1,4 +1,4 @@
-"""One case with every service a real process: `tidybot up --speed max`, and the examiner as one more participant."""
+"""Running a case with every service as a process: `tidybot up --speed max`, the examiner as a participant."""
 
 import os
 import shutil

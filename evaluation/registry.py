@@ -1,4 +1,4 @@
-"""The class of each service of the table."""
+"""Look-up of service classes by name."""
 
 import importlib
 from functools import cache

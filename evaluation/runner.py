@@ -1,4 +1,4 @@
-"""One case in this process: the real services, the examiner among them, in lockstep as fast as the CPU allows."""
+"""Running a case in this process: the real services and the examiner in lockstep, as fast as the CPU allows."""
 
 import json
 import shutil
@@ -36,7 +36,7 @@ OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "servi
 
 
 class FaultScheduler:
-    """Does the faults of a case when the brain is in their states, and reports those that could be done."""
+    """Injects the faults of a case when the brain is in their states, and reports those that took effect."""
 
     def __init__(self, stack: Stack, faults: tuple[TimedFault, ...], report: Reporter = ignore) -> None:
         self._stack, self._waiting, self._report = stack, list(faults), report
@@ -166,7 +166,7 @@ def _swaps(case: Case, report: Reporter) -> dict[str, Any]:
 
 
 def idle_services(case: Case) -> tuple[str, ...]:
-    """The fetch pipeline asks the planner for nothing."""
+    """The services that a case has no use for: the planner, of the fetch pipeline."""
     if not any("pipeline=fetch" in s for s in case.settings):
         return ()
     return ("planner",)

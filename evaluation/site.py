@@ -1,4 +1,4 @@
-"""Real processes of one's own: a router on a free port, services in a fresh namespace, waiting for a condition."""
+"""Real processes for tests and benchmarks: a router on a free port, services in a fresh namespace."""
 
 import os
 import socket
@@ -25,7 +25,7 @@ PATIENCE = 40.0
 
 
 def eventually(probe: Callable[[], T], what: str, patience: float = PATIENCE) -> T:
-    """The first truthy value of `probe`; AssertionError after `patience` seconds."""
+    """Call `probe` until its value is truthy and return that; AssertionError after `patience` seconds."""
     end = time.monotonic() + patience
     while True:
         value = probe()

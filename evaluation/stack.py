@@ -27,7 +27,7 @@ Swap = Callable[[Any], Any]
 
 
 def replacement(entry: str) -> tuple[str, Any]:
-    """The NAME and the class of `package.module:Class`, which takes the place of the service of that name.
+    """The service class that `package.module:Class` names, with its NAME, to take the place of the service so named.
 
     Raises:
         LookupError: there is no such module or class, or it is no service of the stack.
@@ -52,7 +52,7 @@ def paced_services() -> tuple[str, ...]:
 
 
 class Stack:
-    """A simulation and the services around it. `advance` makes time pass; nothing else does.
+    """A simulation and the services around it; time passes by `tick` and `advance` alone.
 
     `scene` is the world; without a `household` the robot is told all of it. `replaced` are classes that stand in for
     services, as `package.module:Class`.
@@ -117,7 +117,7 @@ class Stack:
         return self.join(self._replaced.get(name) or service_class(name))
 
     def join(self, kind: Any) -> Any:
-        """A participant of any class, such as the person who talks to the robot."""
+        """Add a participant of any class, such as the examiner; returns it."""
         service, io = self._make(kind)
         self.members[kind.NAME] = service, io
         self.world.add(service, io)
@@ -154,7 +154,7 @@ class Stack:
                 self.world.add(service, io)
 
     def cut(self, seconds: float) -> None:
-        """The router is away: nobody hears anybody, not even the clock, while the world goes on."""
+        """Cut the bus for some time: nobody receives anything, not even the clock, while the world goes on."""
         observers = [io for name, (_, io) in self.members.items() if name not in paced_services()]
         self.bus.outsiders, self.bus.away = observers, True
         self._cut_until = self.now + seconds
@@ -195,7 +195,7 @@ class Stack:
         return self.world.advance()
 
     def jump(self, seconds: float) -> None:
-        """The clock that all follow leaps ahead; the world does not."""
+        """Let the clock leap ahead for everybody; the world stays."""
         self.world.tick += round(seconds / DT)
 
     def advance(self, seconds: float) -> None:

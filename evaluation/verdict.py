@@ -1,4 +1,4 @@
-"""From what was seen to the row of the report: outcome by physics, cause by stage, false claims. Pure."""
+"""The result of a case from what was observed: outcome by physics, cause by stage, false claims. Pure."""
 
 import msgspec
 
@@ -23,7 +23,7 @@ GOOD = ("delivered", "declined", "stopped", "shown", "reported")
 
 
 def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
-    """The verdict on one case."""
+    """Judge one case."""
     outcome = _outcome(case, seen)
     if case.faults and not seen.fault_reports and outcome in GOOD:
         outcome = "not struck"
@@ -75,7 +75,7 @@ def _unmet(seen: Observed) -> list[str]:
 
 
 def spoken(seen: Observed) -> bool:
-    """The reason that was published was said aloud as well."""
+    """True when the published reason of a failure was said aloud as well."""
     return bool(seen.explained) and any(seen.explained in text for text in seen.said)
 
 

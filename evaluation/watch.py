@@ -1,4 +1,4 @@
-"""A participant that only watches for the judge: for benchmarks and tests that drive the robot themselves."""
+"""A participant that feeds the judge's observer, for benchmarks and tests that drive the robot themselves."""
 
 from common import topics
 from common.bus.port import Io
@@ -38,7 +38,7 @@ class Watch:
 
 
 def observe(io: Io, observer: Observer) -> list[tuple[float, Sample]]:
-    """Show an observer the world as it has become: its samples, with their robot times [s]; none before its model."""
+    """Feed an observer with the newest states of the world; returns its samples, none before the model is known."""
     if (model := io.latest(topics.SIM_MODEL)) is None:
         return []
     observer.model(model)

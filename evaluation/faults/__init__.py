@@ -1,1 +1,1 @@
-"""What can go wrong, done on purpose: to messages, hosts, processes and the world itself."""
+"""Fault injection: into messages, hosts, processes and the simulated world."""

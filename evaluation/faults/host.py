@@ -1,4 +1,4 @@
-"""What befalls the host of a stack in one process: a router that is away, and a disk that takes nothing more."""
+"""Faults of the host for a stack in one process: the router is unreachable, the disk is full."""
 
 import resource
 import tempfile
@@ -10,7 +10,7 @@ from common.topic import Topic
 
 
 class OutageBus(MemoryBus):
-    """A bus whose router can be away.
+    """A bus in memory that can be cut, as when the router is unreachable.
 
     As over Zenoh then: streams are lost, everything else is kept by its publisher and delivered in order afterwards.
     Outsiders, such as who observes the run, go on hearing.
@@ -35,7 +35,7 @@ class OutageBus(MemoryBus):
             self._kept.append((topic, payload, stamp))
 
     def back(self) -> None:
-        """The router is there again."""
+        """Reconnect, as when the router is reachable again."""
         self.away = False
         heard = {id(box) for io in self.outsiders for box in io._boxes.values()}
         kept, self._kept = self._kept, []

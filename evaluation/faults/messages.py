@@ -1,4 +1,4 @@
-"""Faults of what a service receives and publishes: messages dropped, doubled, late, out of order or altered, by a seed.
+"""Faults of messages, drawn by a seed: dropped, doubled, delayed, reordered or altered.
 
 They sit between a service object and its `Io`, so the same rule does the same thing over memory and over Zenoh.
 """
@@ -18,7 +18,7 @@ Kind = Literal["drop", "duplicate", "delay", "reorder", "edit"]
 
 
 class Rule(msgspec.Struct, frozen=True, kw_only=True):
-    """What becomes of the messages that `service` publishes on `key`.
+    """The fault of the messages that `service` publishes on `key`.
 
     Of those between robot times `start` and `until` whose fields equal `match`, the first `skip` pass, the next
     `count` are hit with probability `chance`. `delay` holds them for `seconds`; `reorder` lets the next one overtake;
@@ -61,7 +61,7 @@ class FaultyIo:
         return getattr(self._io, name)
 
     def release(self, now: float) -> None:
-        """Send what has been held long enough."""
+        """Send the delayed messages that are due."""
         self._now = now
         due = [row for row in self._late if row[0] <= now]
         self._late = [row for row in self._late if row[0] > now]

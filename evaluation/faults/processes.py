@@ -1,4 +1,4 @@
-"""Faults of real processes: SIGKILL, SIGSTOP, a router that is killed, a disk without room for each of them.
+"""Faults of real processes: SIGKILL, SIGSTOP, a killed router, a full disk.
 
 Whoever supervises the run (supervisord, and the watchdog for what hangs) brings back what was hit, as on a robot.
 """
@@ -33,7 +33,7 @@ def unavailable(case: Case) -> str:
 
 
 class ProcessFaultInjector:
-    """Does the faults of a case to the processes of a supervised run, each in its state, and reports what it did."""
+    """Injects the faults of a case into a supervised run, each in its state of the brain, and reports them."""
 
     def __init__(
         self, supervision: Supervision, faults: tuple[TimedFault, ...], state_dir: Path, report: Reporter
@@ -99,7 +99,7 @@ class ProcessFaultInjector:
 
 
 class FullDisks:
-    """No process of the run may make a file longer, as on a disk without room; those that start meanwhile follow.
+    """Full disks: no process of the run can make a file longer, nor can those that start meanwhile.
 
     A process is limited at the first look after its start: what it writes before that still finds room.
     """
@@ -127,7 +127,7 @@ class FullDisks:
                 self._before[pid] = before
 
     def took_effect(self) -> bool:
-        """The world, saved twice a second, was not saved any more."""
+        """True when the simulation's checkpoint, saved twice a second, was not saved any more."""
         return _modified(self._world) == self._saved
 
     def end(self, pids: dict[str, int]) -> None:

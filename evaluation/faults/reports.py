@@ -1,4 +1,4 @@
-"""What faults really did: every injector reports it when, and only when, its fault took effect."""
+"""Reports of faults that took effect, by the injectors."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -18,11 +18,11 @@ Reporter = Callable[[FaultReport], None]
 
 
 def ignore(report: FaultReport) -> None:
-    """For runs in which nobody asks what the faults did."""
+    """Drop a report, in runs that do not collect them."""
 
 
 class FaultReportFile:
-    """Reports of several processes to one reader: a JSON record a line, appended in one write."""
+    """A file of reports from several processes to one reader: a JSON record a line, appended in one write."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._read = path, 0

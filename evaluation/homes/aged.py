@@ -1,4 +1,4 @@
-"""A home some months after its map was made: things stand about, others are gone, and people walk about. Pure."""
+"""Homes that have changed since they were mapped: things stand about, others are gone, people walk about. Pure."""
 
 import math
 
@@ -33,7 +33,7 @@ TRIES = 40
 
 
 def aged(home: Scene, rng: np.random.Generator) -> Scene:
-    """The home with what its map does not have; the robot still gets everywhere it got before."""
+    """The home with objects that its map does not have, such that the robot still gets everywhere it got before."""
     floor = Floor.of(home)
     before = floor.reached((home.home.x, home.home.y))
     left: list[Obstacle] = []

@@ -1,4 +1,4 @@
-"""What stands in the rooms of drawn homes: furniture with the sizes that it is sold in.
+"""Catalogue of furniture for drawn homes, by room, in the sizes that are sold.
 
 Sizes are ranges over the current catalogues of large furniture stores (widths, depths and heights of their
 best-selling tables, desks, sideboards, beds, sofas, shelves), rounded to centimetres.

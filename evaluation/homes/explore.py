@@ -1,4 +1,4 @@
-"""A home that nobody has described is explored in lockstep, as `tidybot map` does with processes."""
+"""Exploration of an unknown home in lockstep in one process, as `tidybot map` does with processes."""
 
 from collections.abc import Callable
 from pathlib import Path

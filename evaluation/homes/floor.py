@@ -1,4 +1,4 @@
-"""The floor of a home that is being furnished: what is taken, and where the robot still gets. Pure."""
+"""The free floor of a home that is being furnished, and where the robot can get on it. Pure."""
 
 import math
 from collections.abc import Iterable
@@ -46,7 +46,7 @@ class Floor:
         return found
 
     def keep(self, area: Rectangle) -> None:
-        """Nothing is to be put into this area."""
+        """Keep this area free of furniture."""
         self._kept |= self._inside(area)
 
     def fits(self, area: Rectangle, room: Room, margin: float) -> bool:
@@ -57,7 +57,7 @@ class Floor:
         return not bool(((self._taken | self._kept) & self._inside(wide)).any())
 
     def take(self, area: Rectangle) -> None:
-        """Something stands there now."""
+        """Mark the area as occupied."""
         self._taken |= self._inside(area)
 
     def copy(self) -> "Floor":
@@ -67,7 +67,7 @@ class Floor:
         return other
 
     def reached(self, start: Vec2) -> Mask:
-        """Cells on which the base's centre can be when it starts at `start`."""
+        """Mask of the cells that the base's centre can reach from `start`."""
         labels, _ = ndimage.label(self.clearance() >= PASSAGE)
         mine = labels[self.cell(start)]
         return np.asarray(labels == mine) if mine else np.zeros_like(self._taken)
@@ -94,7 +94,7 @@ class Floor:
         return float(self._x[where]), float(self._y[where])
 
     def beyond(self, distance: float) -> Mask:
-        """The cells farther than that [m] from the robot's start."""
+        """Mask of the cells farther than `distance` [m] from the robot's start."""
         found: Mask = np.hypot(self._x, self._y) > distance
         return found
 

@@ -1,4 +1,4 @@
-"""Furniture into the rooms of a drawn home, so that the robot still gets everywhere. Pure."""
+"""Furnishing of a drawn home, such that the robot still gets everywhere. Pure."""
 
 import math
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ TUCKED = 0.30
 
 @dataclass
 class Furnished:
-    """A shell with what stands in it; `home` is the robot's pose before the tray."""
+    """A shell with furniture and receptacles; `home` is the robot's pose before the tray."""
 
     shell: Shell
     home: Pose2
@@ -45,7 +45,7 @@ class Furnished:
 
 
 def furnish(rng: np.random.Generator, shell: Shell, extras: Mapping[str, tuple[Piece, ...]]) -> Furnished:
-    """Put furniture of each room's type into it, and what `extras` have for it.
+    """Furnish each room of a shell by its type and with its `extras`.
 
     Raises:
         NoHome: a room cannot be reached, or there is no place for the tray.

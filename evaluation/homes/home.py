@@ -1,4 +1,4 @@
-"""Homes without end: a seed in, a flat with furniture and things out. Pure."""
+"""Random homes: a flat with furniture and objects from a seed. Pure."""
 
 import math
 from typing import TypeVar

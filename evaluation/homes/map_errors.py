@@ -1,4 +1,4 @@
-"""A map that the robot made against the truth: errors of walls and surfaces, and what was missed. Pure."""
+"""Comparison of a map made by the robot with the truth: errors of walls and surfaces, and what was missed. Pure."""
 
 import math
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class Errors(NamedTuple):
     extra: list[str]
 
     def row(self) -> dict[str, object]:
-        """As the report of a case has it: centimetres, the median and the 90 % quantile (walls) or the worst."""
+        """The errors as a row of the report: in cm, median and 90 % quantile of walls, median and worst of surfaces."""
         aims = {"walls": (self.walls, 0.9), "heights": (self.heights, 1.0), "outlines": (self.outlines, 1.0)}
         return {
             **{name: centimetres(values, share) for name, (values, share) in aims.items()},
@@ -39,7 +39,7 @@ class Errors(NamedTuple):
 
 
 def compare(made: Household, truth: Scene) -> Errors:
-    """What was mapped against what is there."""
+    """Compare a mapped floor plan with the true one."""
     heights, outlines, missed = [], [], []
     left = list(made.receptacles)
     for r in truth.receptacles:

@@ -1,4 +1,4 @@
-"""The suite `new`: a home that nobody has described. The robot maps it, then lives in it by what it made of it."""
+"""The suite `new`: the robot maps an unknown home and then carries out commands by its own map."""
 
 import math
 import tempfile
@@ -37,7 +37,7 @@ SPOKEN = 0.5
 
 
 class NotMapped(Exception):
-    """Exploring has left no map; says why."""
+    """Exploration has left no map; the message says why."""
 
 
 def new(seed: int) -> Case:

@@ -34,7 +34,7 @@ NAMES = ("living room", "kitchen", "bedroom", "study", "bathroom", "guest room")
 
 
 class NoHome(ValueError):
-    """A draw that is no home: too small for its rooms, or such that the robot does not get to everything."""
+    """A draw that is no valid home: too small for its rooms, or with places that the robot cannot reach."""
 
 
 @dataclass(frozen=True)

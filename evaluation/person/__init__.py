@@ -1,1 +1,1 @@
-"""The person who talks to the robot: wishes, answers and voice."""
+"""The simulated user: wishes, answers and voice."""

@@ -1,4 +1,4 @@
-"""The person's side of the conversation with the robot: sentences typed or by voice, and answers to questions."""
+"""The simulated user's side of the dialogue: sentences, typed or spoken, and answers to questions."""
 
 import math
 import re
@@ -39,7 +39,7 @@ IDEAL = "sim.sensors=ideal"
 
 
 class Dialogue:
-    """Sentences wait in `say` until the robot is silent; `last` is when [s of robot time] either side last spoke."""
+    """Speaks sentences once the robot is silent; `last` is the robot time [s] at which either side last spoke."""
 
     def __init__(self, case: Case, io: Io, hz: int) -> None:
         self._case, self._io, self._chunk = case, io, RATE // hz
@@ -54,11 +54,11 @@ class Dialogue:
 
     @property
     def busy(self) -> bool:
-        """Somebody speaks, or is about to."""
+        """True while somebody speaks or is about to."""
         return bool(self._due or self._sound or self._voice is not None or self._saying)
 
     def hear(self, saying: str, now: float, seen: Sequence[str]) -> None:
-        """What the robot says, "" for nothing; at the end of a sentence the person, who has `seen` what it shows,
+        """Take what the robot says, "" for nothing; after a sentence the user, who has `seen` what it shows,
         answers."""
         before, self._saying = self._saying, saying
         if before and not self._saying:
@@ -67,11 +67,11 @@ class Dialogue:
                 self.say(answer, now + REACTION)
 
     def say(self, text: str, due: float) -> None:
-        """Have the person say it, at robot time `due` [s] at the earliest."""
+        """Queue a sentence of the user, to be said at robot time `due` [s] at the earliest."""
         self._due.append((due, text))
 
     def step(self, now: float, opening: bool, speed: float) -> bool:
-        """Speak; True when a sentence begins. `opening`: it opens a dialogue; `speed` [m/s] of the robot beside."""
+        """Speak what is due; True when a sentence begins. `opening`: it opens a dialogue; `speed` [m/s]: the base's."""
         if self._sound:
             self._play(now, speed)
         elif self._voice is not None:
@@ -110,7 +110,7 @@ class Dialogue:
 
 # --- a person with a wish: says it, listens to what the robot says, and answers its questions
 class SimulatedUser:
-    """Wants `command` done with `thing`, by the world's name; `called` are the person's words for it, if others.
+    """Wants `command` done with the world's object `thing`; `called` are the user's words for it, if others.
 
     Manners: `correct` a wrong question ("no, the <words>"), `reject` it with "no" and repeat when asked, keep `silent`,
     or `agree` to anything.
@@ -181,14 +181,14 @@ def seen_at(place: Vec3, objects: Mapping[str, Vec3]) -> str:
 
 
 def choice(thing: str, shown: Sequence[str]) -> str:
-    """What somebody who wants the thing says to a question about what they are shown, one object or several."""
+    """The answer of somebody who wants the thing to a question about the object or objects that they are shown."""
     if len(shown) < 2:
         return "yes" if thing in shown else "no"
     return f"the {ORDINALS[shown.index(thing)]} one" if thing in shown else "none of them"
 
 
 class Onlooker:
-    """Looks at every sample of the world; `offered` are the places [map] that the robot shows, `shown` what is seen at
+    """The user's eyes on the world; `offered` are the places [map] that the robot shows, `shown` the objects seen at
     each, `speed` [m/s] its base's."""
 
     def __init__(self) -> None:
@@ -198,7 +198,7 @@ class Onlooker:
         self._was = (0.0, (0.0, 0.0))
 
     def see(self, t: float, sample: Sample) -> None:
-        """The world at robot time `t` [s]."""
+        """Take a sample of the world at robot time `t` [s]."""
         places = {name: o.position for name, o in sample.things.items()}
         self.shown = [seen_at(place, places) for place in self.offered]
         (before, there), here = self._was, sample.base[:2]

@@ -1,4 +1,4 @@
-"""What the robot's microphone hears of the robot itself: a fan all the time, motors and wheels while it drives."""
+"""Noise of the robot itself in its microphone: a fan all the time, motors and wheels while it drives."""
 
 import numpy as np
 from numpy.typing import NDArray

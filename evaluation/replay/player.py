@@ -1,4 +1,4 @@
-"""One service fed with its recorded inputs, in lockstep, on a bus in memory."""
+"""Replay of one service on its recorded inputs, in lockstep, on a bus in memory."""
 
 import re
 from collections import defaultdict, deque
@@ -30,7 +30,7 @@ class Alive(msgspec.Struct):
 
 
 class ReplayIo(MemoryIo):
-    """Collects what the service publishes; knows its peers and its ids from the recording.
+    """The service's `Io` in a replay: collects what it publishes, takes peers and ids from the recording.
 
     `ids`: in the order they were made; `seeded`: they end as the seed says, after lockstep.
     """
@@ -60,7 +60,7 @@ class ReplayIo(MemoryIo):
         return self._present.get(name)
 
     def has_subscribers(self, topic: Topic[Any]) -> bool:
-        """Somebody looked at a stream from its first recorded message on."""
+        """True from the topic's first recorded message on: somebody subscribed by then."""
         return topic.keep != "latest" or self.clock.now() > self.first.get(topic.key, inf) - DT / 2
 
     def new_id(self, prefix: str) -> str:
@@ -72,7 +72,7 @@ class ReplayIo(MemoryIo):
 
 
 class Player:
-    """A service object and the recording it hears."""
+    """Steps a service through a recording."""
 
     def __init__(
         self,
@@ -112,7 +112,7 @@ class Player:
         return (self._ticks[-1] - self._ticks[0]) * DT if self._ticks else 0.0
 
     def covers(self, row: Row) -> bool:
-        """Whether the recorder heard the step that gave this output to its end; without a tick it is a client's."""
+        """True when the recording has all outputs of this output's step; without a tick it is a client's message."""
         if not self.lockstep:
             return True
         last = self._ticks[-1] if self._ticks else 0

@@ -1,1 +1,1 @@
-"""What became of the cases, for terminal, JSON and HTML."""
+"""Reports of an evaluation for terminal, JSON and HTML."""

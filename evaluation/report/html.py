@@ -73,7 +73,7 @@ def _axis_end(largest: float) -> float:
 
 # --- how far each case came: counts by stage, and where the charts of the report have their bars and dots. Pure
 def reached(result: Result) -> dict[str, bool]:
-    """Which stages a case came to, by physics where physics can tell."""
+    """The stages that a case has reached, by physics where physics can tell."""
     states = set(_list(result.evidence.get("states")))
     things = [t for t in _list(result.evidence.get("things")) if isinstance(t, dict)]
     lifted = bool(things) and all(t["lifted"] for t in things)

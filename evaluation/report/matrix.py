@@ -1,4 +1,4 @@
-"""What came of every fault: service x state x fault, recovered, honestly reported or lost, and the time that took."""
+"""Outcomes of the chaos suite, by service, state and fault: recovered, reported or lost, and in what time."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from evaluation.report.statistics import percent
 
 
 class Tally(msgspec.Struct):
-    """Cases by what came of them; `missed`: the fault never took effect; `lies`: false claims.
+    """Counts of cases by outcome; `missed`: the fault never took effect; `lies`: false claims.
 
     `seconds` of robot time to the mission's next step.
     """
@@ -86,7 +86,7 @@ def cell(results: Sequence[Result]) -> str:
 
 
 def all_faults(results: Sequence[Result]) -> Table:
-    """Rows of fault kinds: what came of them, with 95 % intervals."""
+    """One row for each kind of fault: its outcomes with 95 % intervals."""
     heads = ("fault", "hit", "recovered", "honest error", "lost", "not struck", "dropped", "false claims")
     table = Table(*heads, "mean s", "max s", title="all faults", title_justify="left")
     for fault in [*dict.fromkeys(map(_fault, results)), "all"]:

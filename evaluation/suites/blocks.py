@@ -1,4 +1,4 @@
-"""What scenarios are made of: a random object, a command, a misunderstanding, and where things belong."""
+"""Building blocks of scenarios: random objects, commands, misunderstandings, and where things belong."""
 
 from functools import cache
 
@@ -51,7 +51,7 @@ def pick(
 
 
 def other(rng: np.random.Generator, scene: Scene, spec: ObjectSpec) -> ObjectSpec:
-    """What the object can be mistaken for: one of the same kind or colour."""
+    """Another object that this one can be mistaken for: of the same kind or colour."""
     alike = [o for o in scene.objects if o is not spec and (o.kind == spec.kind or o.colour == spec.colour)]
     pool = alike or [o for o in scene.objects if o is not spec]
     return pool[int(rng.integers(len(pool)))]
@@ -66,7 +66,7 @@ def fetch_case(suite: str, seed: int, spec: ObjectSpec, scene: Scene, wording: s
 
 
 def misheard_as(command: str, confidence: float = 0.85) -> tuple[Rule, ...]:
-    """What recognition makes of the person's first command."""
+    """A fault by which speech recognition takes what the user says for `command`."""
     said = {"text": command, "confidence": confidence, "confirmed": False}
     return (Rule(service="speech", key="voice_command", kind="edit", fields=said),)
 

@@ -1,4 +1,4 @@
-"""What each command of docs/COMMANDS.md has to bring about in a flat with six things: the suite `commands`.
+"""The suite `commands`: each line of docs/COMMANDS.md, with what it has to bring about in a flat with six objects.
 
 A contract test holds the page against `TASKS`: a command that is planned there has effects here.
 """
@@ -25,7 +25,7 @@ SECONDS = 900.0
 
 
 class Task(msgspec.Struct, frozen=True):
-    """What is said and what must come of it.
+    """A command and what it has to bring about.
 
     `first` is what the command itself must bring about, where what follows undoes it; None: all of it. `then` are
     further lines (text, when, seconds after) as in `evaluation.case.Line`; `thing` is what the person names

@@ -1,4 +1,4 @@
-"""Objects that no household lists: kind, size, colour and mass drawn within what shops sell and the hand can hold."""
+"""Random objects that no household lists: kind, size, colour and mass as in shops, and as the hand can hold."""
 
 import colorsys
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Commands as they are really said: recorded or synthetic voices in a room, through speech recognition, to the end.
+"""The suite of spoken commands: recorded or synthetic voices in a room, recognised and carried out.
 
 A directory of recordings has a `manifest.tsv` with the columns file, text, voice, snr and kind. Of it, clean sentences
 are taken that `SENTENCES` knows what to make of; answers come in the same voice where it has them.

@@ -1,4 +1,4 @@
-"""The suites: a seed in, a scenario out. Case i of a run has the seed `seed + i` and can be repeated alone."""
+"""The table of suites, functions from a seed to a scenario. Case i of a run has seed `seed + i`."""
 
 from collections.abc import Callable
 from functools import partial
@@ -85,7 +85,7 @@ def cases(
 
 
 def dressed(case: Case, settings: tuple[str, ...], pipeline: str, replaced: tuple[str, ...]) -> Case:
-    """A case with what the command line adds to each."""
+    """A case with the settings that the command line adds to each."""
     chosen = (f"brain.pipeline={pipeline}",) if pipeline else ()
     own = case.settings if any(s.startswith("brain.pipeline=") for s in case.settings) else chosen + case.settings
     effective = own + settings

@@ -1,4 +1,4 @@
-"""The suites of things that the robot was not told about: sizes and colours drawn, in crowds, lying.
+"""The suites of objects that the robot was not told about: of random sizes and colours, in crowds, lying.
 
 The household has the floor plan and words, and lists no thing. What is wanted is named by a colour and a kind that
 nothing else in the world has.
@@ -42,13 +42,13 @@ EDGE = 0.02
 
 
 def sizes(seed: int) -> Case:
-    """Everything stands for itself; sizes and colours are drawn."""
+    """A case with objects of random sizes and colours that stand apart."""
     rng = random(seed, 21)
     return fetch(seed, "sizes", lambda: things(int(rng.integers(*IN_A_WORLD)), rng), rng)
 
 
 def lying(seed: int) -> Case:
-    """The one that is wanted lies on its side."""
+    """A case in which the wanted object lies on its side."""
     rng = random(seed, 22)
 
     def draw() -> list[ObjectSpec]:
@@ -144,7 +144,7 @@ def with_room(plan: Scene, draw: Callable[[], Iterable[ObjectSpec]], seed: int, 
 
 
 def nothing_listed(plan: Scene) -> Household:
-    """What the robot is told: the floor plan and the words of the configuration."""
+    """The household of these suites: floor plan and configured words, and no objects."""
     return mapped(plan, load_words(config_dir()))
 
 

@@ -1,1 +1,1 @@
-"""Where cases run: in lanes of this machine or of a cluster."""
+"""Running cases in child processes (lanes), on this machine or on a cluster."""

@@ -1,4 +1,4 @@
-"""What decides the outcome of a seed: the same code on every machine of a cluster."""
+"""Fingerprint of all that decides a seed's outcome, to compare the machines of a cluster."""
 
 import hashlib
 import platform
@@ -39,6 +39,6 @@ def _version(name: str) -> str:
 
 
 def difference(ours: dict[str, str], theirs: dict[str, str]) -> str:
-    """What of `theirs` is not as in `ours`, as a sentence."""
+    """The differences of two fingerprints, as a sentence."""
     rows = [f"{name} {theirs.get(name)}, here {own}" for name, own in ours.items() if theirs.get(name) != own]
     return "runs other code: " + "; ".join(rows)

@@ -62,7 +62,7 @@ class Lane:
         self._given, self._closed = 0, False
 
     def run(self, case: Case, progress: Progress, lost: Callable[[str], None] = lambda why: None) -> Result:
-        """The result of a case; `lost` hears of each process that it cost.
+        """Run a case and return its result; `lost` is called for each process that died on it.
 
         Raises:
             LaneClosed: `close` was called by another thread.
@@ -172,7 +172,7 @@ class Lane:
 
 
 def child(descriptor: int, name: str) -> None:
-    """A child's life: cases in, signs of life and results out, until the pipe closes."""
+    """The child process's loop: takes cases, sends signs of life and results, until the pipe closes."""
     signal.signal(signal.SIGTERM, _leave)
     run: Run = pkgutil.resolve_name(name)
     pipe: Connection[Any, Any] = Connection(descriptor)

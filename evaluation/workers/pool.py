@@ -1,4 +1,4 @@
-"""Cases on this machine: a thread for each lane, results and progress as they come."""
+"""Running cases on this machine: a thread for each lane, results and progress as they come."""
 
 from collections import deque
 from collections.abc import Generator
@@ -13,7 +13,7 @@ from evaluation.workers.lane import SILENCE, WALL_LIMIT, Lane, LaneClosed, Run, 
 
 
 class Progressed(msgspec.Struct):
-    """Where a worker's case is: robot time [s] and the brain's state."""
+    """Progress of a worker's case: robot time [s] and the brain's state."""
 
     worker: str
     case: Case

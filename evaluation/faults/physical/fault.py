@@ -13,7 +13,7 @@ Kind = Literal["shove", "slip", "heavy", "wide", "jam", "obstacle", "kidnap"]
 
 
 class PhysicalFault(msgspec.Struct, frozen=True, kw_only=True):
-    """What happens to the grasp of `thing`, or in the robot's way (`thing`: an obstacle).
+    """A fault of the grasp of `thing`, or an obstacle `thing` in the robot's way.
 
     `shove`: pushed out of the hand as the fingers come. `slip`: after it was carried `after` metres the pads lose
     their friction for `seconds`. `jam`: a finger stays where it is for `seconds` when it should close. `heavy`: it has
@@ -30,7 +30,7 @@ class PhysicalFault(msgspec.Struct, frozen=True, kw_only=True):
     pose: Pose2 = IDENTITY_POSE
 
     def world(self, scene: Scene) -> Scene:
-        """The scene with the object as it really is."""
+        """The scene with the object changed as the fault wants it."""
         changes: dict[str, Any] = {}
         if self.kind == "heavy":
             changes["mass"] = self.amount

@@ -1,4 +1,4 @@
-"""Physical faults: what the world does to a grasp, injected into MuJoCo by the evaluator and asserted from its state.
+"""Physical faults, injected into MuJoCo; each reports from the state of physics whether it took effect.
 
 No message says that they are there: `with_physical_faults` returns a class in the
 simulation's place whose every step they follow. No service can reach them: nothing below `services/` imports

@@ -1,4 +1,4 @@
-"""What every injector of a physical fault can ask of the world: where hand and object are, and who touches whom."""
+"""Base class of the injectors of physical faults: poses and contacts of hand and object."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ CLOSED = 0.5
 
 
 class Injector:
-    """One fault. `step` follows every 10 ms of physics and returns what was seen when the fault took effect."""
+    """Injects one fault: `step` is called after every 10 ms of physics and returns what was seen of the effect."""
 
     def __init__(self, fault: PhysicalFault, physics: Physics) -> None:
         self.fault, self.physics = fault, physics
@@ -31,7 +31,7 @@ class Injector:
         self.over = False
 
     def step(self, now: float, state: str) -> str:
-        """`state`: the brain's. Nothing is left to do once `over`."""
+        """Called after each tick, with the brain's `state`; not any more once `over`."""
         raise NotImplementedError
 
     # --- what the world shows
@@ -44,11 +44,11 @@ class Injector:
         return self.physics.data.xpos[self.body].copy()
 
     def closing(self) -> bool:
-        """The gripper is told to close."""
+        """True while the gripper is commanded to close."""
         return self.physics.fingers.wanted > CLOSED
 
     def touched(self) -> int:
-        """How many of the two fingers' pads touch the object."""
+        """Number of the fingers, 0 to 2, whose pads touch the object."""
         robot, _ = touching(self.physics)
         return sum(bool(robot[self.spec.name] & side) for side in self.physics.pads)
 
@@ -58,7 +58,7 @@ class Injector:
         return turn.T @ (self.thing() - self.pinch())
 
     def arrived(self) -> bool:
-        """The open hand has come to rest with the object between its fingers."""
+        """True when the open hand has come to rest with the object between its fingers."""
         at, before = self.pinch(), self._before
         self._before = at
         slow = float(np.linalg.norm(at - before)) < ARRIVED * DT

@@ -1,4 +1,4 @@
-"""A finger jams as it should close."""
+"""A fault: a finger jams as it should close."""
 
 from typing import Any
 

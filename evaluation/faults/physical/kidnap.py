@@ -1,4 +1,4 @@
-"""The robot is carried elsewhere: its wheels do not turn, nobody tells it."""
+"""A fault: the robot is carried elsewhere, without its wheels turning."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The object is shoved out from between the fingers as they come."""
+"""A fault: the object is pushed out from between the fingers before they close."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The object slides in the hand while it is carried."""
+"""A fault: the object slides in the hand while it is carried."""
 
 from typing import Any
 

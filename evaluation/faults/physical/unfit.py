@@ -1,4 +1,4 @@
-"""Objects too heavy or too wide for the hand, and obstacles: only the scene is changed, and what follows is watched."""
+"""Faults that only change the scene, and watch for their effect: objects too heavy or too wide, obstacles."""
 
 import math
 from functools import cached_property
