@@ -4,19 +4,19 @@ from pathlib import Path
 from typing import Any
 
 
-def session(path: Path, threads: int) -> Any:
+def session(path: Path) -> Any:
     """An inference session of an ONNX or ORT file. Given the bytes themselves it would keep them for good."""
     import onnxruntime
 
-    return onnxruntime.InferenceSession(str(path), options(threads), providers=["CPUExecutionProvider"])
+    return onnxruntime.InferenceSession(str(path), options(), providers=["CPUExecutionProvider"])
 
 
-def options(threads: int) -> Any:
+def options() -> Any:
     """Options of a session."""
     import onnxruntime
 
     made = onnxruntime.SessionOptions()
-    made.intra_op_num_threads = threads
+    made.intra_op_num_threads = 1
     made.inter_op_num_threads = 1
     made.log_severity_level = 3
     # Memory patterns and the arena would keep the space of the longest utterance for good.

@@ -16,6 +16,7 @@ from common.sound import AudioError
 from common.topic import Topic
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import consequence
+from services.speech.listen.segmenter import Segmenter
 from services.speech.listen.utterance_queue import PendingUtterance, UtteranceQueue
 from services.speech.recognise.free_text import as_heard
 from services.speech.recognise.front_end import FrontEnd
@@ -46,7 +47,7 @@ class SpeechService:
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         if speech_weights.find() is None:
             raise StartError(f"speech: {speech_weights.MISSING}")
-        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, household, found))
+        self._queue = UtteranceQueue(config, io, Segmenter(config), lambda: FrontEnd(config, household, found))
         self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
         self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(

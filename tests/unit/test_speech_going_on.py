@@ -57,11 +57,11 @@ class Listener:
 
     wake = 0.0
 
-    def __init__(self) -> None:
+    def __init__(self, seconds: float = RECOGNISED) -> None:
         self.worker, self.speaking, self.ended = Worker(), False, 0
-        config = SpeechConfig(preload=False, wake_word=False, recognition_seconds=RECOGNISED)
-        self.queue = UtteranceQueue(config, self.worker, FrontEnd)  # type: ignore[arg-type]
-        self.queue._segmenter = self  # type: ignore[assignment]
+        config = SpeechConfig(preload=False, wake_word=False, recognition_seconds=seconds)
+        self.queue = UtteranceQueue(config, self.worker, self, FrontEnd)  # type: ignore[arg-type]
+        self.begins(1.0)
 
     def push(self, _samples: Samples) -> list[Segment]:
         self.speaking, number, self.ended = not self.ended, self.ended, 0
@@ -85,9 +85,7 @@ class Listener:
 
 @pytest.fixture
 def listener() -> Listener:
-    made = Listener()
-    made.begins(1.0)
-    return made
+    return Listener()
 
 
 def test_a_sure_command_waits_for_nobody(listener: Listener) -> None:
@@ -95,8 +93,8 @@ def test_a_sure_command_waits_for_nobody(listener: Listener) -> None:
     assert listener.taken(2.0 + RECOGNISED) == "bring me the apple"
 
 
-def test_a_doubtful_one_waits_a_little_as_it_will_be_asked_about(listener: Listener) -> None:
-    listener.queue._config = SpeechConfig(recognition_seconds=0.1)
+def test_a_doubtful_one_waits_a_little_as_it_will_be_asked_about() -> None:
+    listener = Listener(0.1)
     listener.ends(2.0, 3)
     assert not listener.taken(2.0 + DOUBT - 0.1)
     assert listener.taken(2.0 + DOUBT) == "bring me my wallet"
@@ -149,9 +147,12 @@ def test_stop_waits_for_nobody(listener: Listener) -> None:
     assert listener.taken(2.0 + RECOGNISED) == "stop"
 
 
-def test_a_stop_is_the_end_of_what_was_said_before_it(listener: Listener) -> None:
-    listener.ends(2.0, 3)
-    listener.begins(3.6)  # too late to go on with it
+def test_a_stop_is_the_end_of_what_was_said_before_it() -> None:
+    listener = Listener(0.1)
+    listener.ends(3.95, 3)  # is not recognised yet as the next one ends, and then waits as a doubtful one
+    listener.begins(3.98)
     listener.ends(4.0, 5)
-    listener.queue.settle(listener.queue._pending[-1])
+    stop = listener.queue.take(4.2)
+    assert stop is not None and stop.job.result().text == "stop" and listener.queue.busy
+    listener.queue.settle(stop)
     assert not listener.queue.busy

@@ -27,16 +27,16 @@ def test_packed_weights_multiply_as_unpacked_ones(tmp_path: Path) -> None:
     net.times(doubled, (q, scale, added), output="y")
     path = tmp_path / "net.onnx"
     onnx.save_model(net.model({"x": (np.float32, 2)}, ["y"]), path)
-    (found,) = session(path, 1).run(None, {"x": x})
+    (found,) = session(path).run(None, {"x": x})
     wanted = 2 * x @ (q * scale + added)
     assert np.abs(found - wanted).max() < 0.02 * np.abs(wanted).max()
 
 
 @pytest.mark.slow
 def test_the_decoder_finds_what_the_shipped_one_finds() -> None:
-    shipped = session(models() / "decoder_model_merged.ort", 1)
+    shipped = session(models() / "decoder_model_merged.ort")
     names = [o.name for o in shipped.get_outputs()]
-    encoder, decoder = networks(1)
+    encoder, decoder = networks()
     sound = Voice().speak("bring me the red mug").astype(np.float32) / np.float32(32768)
     hidden = encoder.run(None, {"input_values": np.stack([sound, sound[::-1]])})[0]
     attended, cache = decoder.cross_attention_cache(hidden), decoder.empty_cache(2)

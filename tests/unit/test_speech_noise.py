@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
+from services.speech.recognise.grammar import Grammar
 from services.speech.recognise.moonshine import Decoded, EncodedUtterance, Moonshine
 from services.speech.recognise.recogniser import PreparedUtterance, Recogniser, confidence_of, verdict_of
 from services.speech.recognise.scoring import CANDIDATES, likeliest, prior_cost, ranked, rescored, time_scaled
-from services.speech.recognise.token_trie import BOS, EOS, AnyTokens
+from services.speech.recognise.token_trie import BOS, EOS
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -203,13 +204,14 @@ class Breath:
 
 
 def test_silence_is_no_transcription_of_what_was_said() -> None:
-    model = object.__new__(Moonshine)
-    model.tokens, model._any, model._decoder = TOKENS, AnyTokens(TOKENS), Breath()  # type: ignore[assignment]
+    model = Moonshine(None, Breath(), TOKENS, beam=8)  # type: ignore[arg-type]
     assert [said.text for said in model.freely(EncodedUtterance({}, 1, 2), lambda text: 0.0)] == ["mug"]
 
 
 class Transcriber:
     """A network to which the beginning of what was said sounds likelier than all of it."""
+
+    tokens = TOKENS
 
     def encode(self, _variants: object) -> None: ...
 
@@ -227,9 +229,7 @@ class Transcriber:
 
 
 def test_a_transcription_has_to_fit_the_time_that_was_spoken() -> None:
-    recogniser = object.__new__(Recogniser)
-    recogniser._config, recogniser._cost = CONFIG, lambda text: 0.0
-    recogniser._model, recogniser._tries = Transcriber(), {"command": None}  # type: ignore[assignment, dict-item]
+    recogniser = Recogniser(CONFIG, Transcriber(), {"command": Grammar(("wait",), {})}, lambda text: 0.0)  # type: ignore[arg-type]
     for seconds, text in ((0.6, "I can't"), (2.0, "I can't reach the mug on the shelf")):
         heard = PreparedUtterance(np.zeros((1, RATE), np.float32), seconds)
         assert recogniser.recognise(heard, "command").free == text

@@ -274,7 +274,7 @@ def test_the_same_sound_gives_the_same_messages(said: dict[str, Samples]) -> Non
 
 
 def test_a_segment_pauses_ends_and_carries_the_wake_word(said: dict[str, Samples]) -> None:
-    segmenter = Segmenter(0.6, 12.0, 0.25, 1.6, wake=True)
+    segmenter = Segmenter(CONFIG)
     found: list[Segment] = []
     for text in ("yes", "hey jarvis"):
         for start in range(0, len(said[text]), 1600):

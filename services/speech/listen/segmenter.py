@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.sound import RATE, Samples
+from services.speech.config import SpeechConfig
 from services.speech.listen.loudness import FRAME, LOUDER, BackgroundVoices, Gain
 from services.speech.listen.vad import STOP_AT, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
@@ -27,13 +28,14 @@ class Segment:
 class Segmenter:
     """Cuts sound into utterances: `push` takes samples and returns those that pause or end in them."""
 
-    def __init__(self, end_silence: float, max_utterance: float, pause: float, short: float, wake: bool) -> None:
+    def __init__(self, config: SpeechConfig) -> None:
         self._detector = VoiceDetector()
-        self._endpointer = Endpointer(end_silence, max_utterance)
+        self._endpointer = Endpointer(config.end_silence, config.max_utterance)
         self._gain, self._background = Gain(), BackgroundVoices()
-        self._wakes = wake
+        self._wakes = config.wake_word
         self._wake: WakeWord | None = None
-        self._pause, self._short = round(pause * RATE / FRAME), short * RATE
+        self._pause = round(config.interrupt_pause * RATE / FRAME)
+        self._short = config.interrupt_longest * RATE
         self._frames: list[Samples] = []
         self._rest = np.zeros(0, np.int16)
         self._examined = False

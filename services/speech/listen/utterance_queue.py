@@ -61,13 +61,10 @@ class UtteranceQueue:
     ... the red mug".
     """
 
-    def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], FrontEnd]) -> None:
-        self._config, self._io, self._load = config, io, load
+    def __init__(self, config: SpeechConfig, io: Io, segmenter: Segmenter, load: Callable[[], FrontEnd]) -> None:
+        self._config, self._io, self._segmenter, self._load = config, io, segmenter, load
         self._front_end: Job[FrontEnd] | None = None
         self._vocabulary: tuple[Household, tuple[str, ...]] | None = None
-        self._segmenter = Segmenter(
-            config.end_silence, config.max_utterance, config.interrupt_pause, config.interrupt_longest, config.wake_word
-        )
         if config.preload:
             self._front_end = io.submit(load, seconds=LOADING)
         if not io.lockstep:

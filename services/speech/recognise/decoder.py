@@ -28,11 +28,11 @@ Cache = dict[str, Array]
 class Decoder:
     """Sessions of two networks: the cross-attention cache of an utterance, and one step of decoding."""
 
-    def __init__(self, folder: Path, threads: int) -> None:
+    def __init__(self, folder: Path) -> None:
         self._embedding = np.load(folder / EMBEDDING, mmap_mode="r")
         self._scale, self._added = np.load(folder / EMBEDDING_SCALE)
-        self._cross = session(folder / CROSS, threads)
-        self._step = session(folder / STEP, threads)
+        self._cross = session(folder / CROSS)
+        self._step = session(folder / STEP)
 
     def cross_attention_cache(self, hidden: Array) -> Cache:
         """Keys and values per layer of what the encoder found, (variants, frames, MODEL_SIZE)."""

@@ -58,12 +58,15 @@ class FrontEnd:
     """Recognition from samples to verdict; loads models at construction, so it is made in the worker."""
 
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
+        from services.speech.recognise import moonshine
+
         self._detector, self._config = VoiceDetector(), config
         self._names = known_names(config, household, ())
-        self._recogniser = Recogniser(config, found, lambda text: cost(text, self._names, config))
+        model = moonshine.load(config.beam)
+        self._recogniser = Recogniser(config, model, found, lambda text: cost(text, self._names, config))
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
-        """Recognise 16 kHz int16 samples (n,); `wake` is the wake word detector's score for them."""
+        """Recognise 16 kHz int16 samples (n,); `detected` is the wake word detector's score for them."""
         utterance = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
         if utterance is None:
             return Recognition("", "silence", 0.0)

@@ -65,24 +65,27 @@ class EncodedUtterance:
 
 
 @cache
-def networks(threads: int) -> tuple[Any, Decoder]:
+def networks() -> tuple[Any, Decoder]:
     """Encoder and decoder, shared by all that live in one process."""
     with prepared() as folder:
-        return session(folder / ENCODER, threads), Decoder(folder, threads)
+        return session(folder / ENCODER), Decoder(folder)
+
+
+def load(beam: int) -> "Moonshine":
+    """The shipped networks with their tokens; `beam`: hypotheses that the search keeps."""
+    return Moonshine(*networks(), read_tokens(speech_weights.folder() / "tokenizer.bin"), beam)
 
 
 class Moonshine:
-    """One encoder and one decoder; not for use by several threads at once.
+    """Speech to text by one encoder and one decoder; not for use by several threads at once.
 
     An utterance may be given in several input variants of equal length (as recorded, noise taken out): their token
     probabilities are averaged, so that a word must be plausible in all of them.
     """
 
-    def __init__(self, beam: int = 8, threads: int = 1) -> None:
-        self._encoder, self._decoder = networks(threads)
-        self._beam = beam
-        self.tokens = read_tokens(speech_weights.folder() / "tokenizer.bin")
-        self._any = AnyTokens(self.tokens)
+    def __init__(self, encoder: Any, decoder: Decoder, tokens: list[str], beam: int) -> None:
+        self._encoder, self._decoder, self.tokens, self._beam = encoder, decoder, tokens, beam
+        self._any = AnyTokens(tokens)
 
     def encode(self, variants: Array) -> EncodedUtterance:
         """Encode 16 kHz samples (variants, n) of one utterance."""

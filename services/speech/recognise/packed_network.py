@@ -153,7 +153,7 @@ def _as_onnx(path: Path, folder: Path) -> Path:
     """An ORT file as an ONNX file, unchanged otherwise."""
     import onnxruntime
 
-    copy, writing = folder / "model.onnx", options(1)
+    copy, writing = folder / "model.onnx", options()
     writing.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     writing.optimized_model_filepath = str(copy)
     writing.add_session_config_entry("session.save_model_format", "ONNX")

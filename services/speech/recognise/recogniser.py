@@ -16,10 +16,11 @@ from common.messages import Transcription
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.scoring import likeliest, prior_cost, ranked, rescored, time_scaled
+from services.speech.recognise.token_trie import TokenTrie
 from services.speech.recognise.wake_text import clauses, without_wake
 
 if TYPE_CHECKING:
-    from services.speech.recognise.moonshine import Decoded, EncodedUtterance
+    from services.speech.recognise.moonshine import Decoded, EncodedUtterance, Moonshine
 
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
@@ -78,19 +79,18 @@ class Recogniser:
     negative log-probability.
     """
 
-    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar], cost: Callable[[str], float]) -> None:
-        from services.speech.recognise.moonshine import Moonshine
-        from services.speech.recognise.token_trie import TokenTrie
-
-        self._config, self._cost = config, cost
-        self._model = Moonshine(config.beam)
-        self._trie: Callable[[Grammar], TokenTrie] = lambda grammar: TokenTrie(self._model.tokens, grammar)
-        self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
+    def __init__(
+        self, config: SpeechConfig, model: "Moonshine", grammars: dict[Scope, Grammar], cost: Callable[[str], float]
+    ) -> None:
+        self._config, self._model, self._cost = config, model, cost
+        self._tries = self._compiled(grammars)
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Add names of things to the grammars, beside those of the configuration and the household."""
-        found = grammars(self._config, household, names)
-        self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
+        self._tries = self._compiled(grammars(self._config, household, names))
+
+    def _compiled(self, found: dict[Scope, Grammar]) -> dict[Scope, TokenTrie]:
+        return {scope: TokenTrie(self._model.tokens, grammar) for scope, grammar in found.items()}
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope, detected: float = 0.0) -> Recognition:
         config = self._config

@@ -1,13 +1,13 @@
 """Hibari's pronunciation with memory-mapped dictionaries, and its voice in an onnxruntime session of ours."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
+from common.inference import session
 from services.speech.speak.dictionaries import GOLD, SILVER, assets, tagger
 from services.speech.speak.packed_mapping import PackedMapping
 
@@ -50,8 +50,8 @@ class Pronunciation(G2P):  # type: ignore[misc]
 class LeanHibari(hibari.Hibari):  # type: ignore[misc]
     """The library's default voice in a session of ours: its own keeps the space of the longest sentence."""
 
-    def __init__(self, session: Callable[[Path, int], Any], folder: Path) -> None:
+    def __init__(self, folder: Path) -> None:
         self.voice, self.model_path = DEFAULT, voice_path(DEFAULT)
-        self.sess = session(Path(self.model_path), 1)
+        self.sess = session(Path(self.model_path))
         self.vocab = msgspec.json.decode((assets() / "vocab.json").read_bytes())
         self._g2p = Pronunciation(folder)

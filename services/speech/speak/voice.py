@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 
-from common.inference import session
 from common.process.host import return_memory
 from common.sound import RATE, Samples, resample
 from services.speech.prepared import prepared
@@ -18,11 +17,11 @@ LONG_NUMBER = re.compile(r"\d{7,}")
 
 
 class Voice:
-    """Loads in seconds and speaks in milliseconds: make it in the worker."""
+    """Synthesises speech in milliseconds; takes seconds to load, so it is made in the worker."""
 
     def __init__(self) -> None:
         with prepared() as folder:
-            self._voice = LeanHibari(session, folder)
+            self._voice = LeanHibari(folder)
         self.speak("ready")  # what else it needs it loads with the first word
         return_memory()
 
