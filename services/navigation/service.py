@@ -24,7 +24,7 @@ STALE = 0.1
 
 
 class NavigationService:
-    """Drives the base to items, places and poses; `arrived` only after the base says that it is there."""
+    """Drives the base to items, places and poses. `state`: its pose, `map`: the costmap, `neighbours`: other robots."""
 
     NAME = "navigation"
     HZ = 20
@@ -35,30 +35,30 @@ class NavigationService:
         self._config, self._io = config, io
         self._destinations = Destinations(config, io)
         self._upkeep = MapUpkeep(config, io)
-        self._map, self._contacts = self._upkeep.map, self._upkeep.contacts
+        self.map, self._contacts = self._upkeep.map, self._upkeep.contacts
         # While a map is made its cells are the error: a door that the robot just fits through is passed.
         spare = 0.0 if config.map == "mapping" else config.clearance
-        self._planner = PathPlanner(self._map, config.footprint_radius + spare, config.inflation)
-        self._state = StateEstimator(config, io, self._map)
+        self._planner = PathPlanner(self.map, config.footprint_radius + spare, config.inflation)
+        self.state = StateEstimator(config, io, self.map)
         self._navigator: Navigator | None = None
         self._search: Search | None = None
         self._found: Search | None = None
         self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
-        self._orientation = Orientation(config, io, self._state, self._map)
-        self._neighbours = Neighbours(config, io, self._map, self._planner)
-        self._reports = Reports(io, self._state)
+        self._orientation = Orientation(config, io, self.state, self.map)
+        self.neighbours = Neighbours(config, io, self.map, self._planner)
+        self._reports = Reports(io, self.state)
         self._legs = 0
         self._now = 0.0
 
     def step(self, now: float) -> None:
         io, self._now = self._io, now
-        self._state.step(now)
-        if self._state.fresh and not self._state.lost:
-            self._upkeep.see(self._state.unmapped, now)
-        self._neighbours.hear(self._known_pose, self._busy, now)
-        self._state.robots = self._neighbours.circles
+        self.state.step(now)
+        if self.state.fresh and not self.state.lost:
+            self._upkeep.see(self.state.unmapped, now)
+        self.neighbours.hear(self._known_pose, self._busy, now)
+        self.state.robots = self.neighbours.circles
         self._upkeep.step(self._destinations.objects(), now)
         if io.take_all(topics.ROBOT_STOP) and self._busy:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
@@ -80,7 +80,7 @@ class NavigationService:
 
     @property
     def _known_pose(self) -> Pose2 | None:
-        return None if self._state.lost else self._state.pose
+        return None if self.state.lost else self.state.pose
 
     @property
     def _busy(self) -> bool:
@@ -140,7 +140,7 @@ class NavigationService:
         if self._config.map == "mapping":
             patience = PASSING_BY
         self._navigator = Navigator(
-            self._config, self._map, self._planner, self._contacts, choices, name, self._now, patience
+            self._config, self.map, self._planner, self._contacts, choices, name, self._now, patience
         )
         self._reports.begin_leg()
 
@@ -157,12 +157,12 @@ class NavigationService:
             self._search = None
             self._go(self._destinations.goals.spot(search.item))
             return
-        pose = self._state.pose
+        pose = self.state.pose
         if pose is None or search.timed_out(now):
             return
         looked = self._destinations.coverage.look(pose, now, self._config.look_time)
         if self._navigator is None and (looked or search.fresh):
-            view = search.next(pose, self._planner, self._map)
+            view = search.next(pose, self._planner, self.map)
             self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
             self._go([(0.0, view)], PASSING_BY)
 
@@ -177,7 +177,7 @@ class NavigationService:
     def _located(self, reached: list[m.GoalReached], now: float) -> bool:
         """True while the robot knows where it is; else it finds out. Raises `Ended` when it cannot."""
         doing = self._orientation.doing
-        if self._state.lost:
+        if self.state.lost:
             self._orientation.find(reached, now)
         elif self._orientation.end():
             self._contacts.forget()
@@ -185,15 +185,15 @@ class NavigationService:
                 self._navigator.relocated(now)
         if self._orientation.doing != doing:
             self._reports.feedback(self._navigator, self._orientation.doing)
-        return not self._state.lost
+        return not self.state.lost
 
     def _advance(self, navigator: Navigator, reached: list[m.GoalReached], now: float) -> None:
         """Raises `Ended` when the goal has."""
-        state = self._state
+        state = self.state
         if state.age(now) > STALE:
             self._contacts.interrupt()
         try:
-            aside = self._neighbours.steer(navigator, self._known_pose, state.points, now)
+            aside = self.neighbours.steer(navigator, self._known_pose, state.points, now)
             target = (
                 navigator.give_way(aside, now)
                 if aside is not None
@@ -216,17 +216,17 @@ class NavigationService:
 
     def _with_others(self, now: float) -> None:
         """Tell the other robots which way this one takes, and make room for them while it has nothing to do."""
-        state, pose, navigator = self._state, self._known_pose, self._navigator
-        if self._neighbours.alone:
+        state, pose, navigator = self.state, self._known_pose, self._navigator
+        if self.neighbours.alone:
             return
-        if not self._busy and self._neighbours.state == "free":
-            aside = self._neighbours.steer(None, pose, state.points, now)
+        if not self._busy and self.neighbours.state == "free":
+            aside = self.neighbours.steer(None, pose, state.points, now)
             if aside is not None:
                 x, y, theta = state.localiser.to_odometry(aside)
                 self._legs += 1
                 self._io.publish(topics.BASE_TARGET, m.BaseTarget(x=x, y=y, theta=theta, id=f"aside/{self._legs}"))
         path = navigator.ahead(pose, now) if navigator is not None and pose is not None else []
-        self._neighbours.tell(pose, path, now)
+        self.neighbours.tell(pose, path, now)
 
     def _finish(self, ended: Ended) -> None:
         navigator, self._search, self._found = self._navigator, None, None
@@ -234,8 +234,8 @@ class NavigationService:
         self._navigator = None
         self._orientation.end()
         if ended.status == "arrived":
-            self._destinations.arrived(self._state.pose)
-        if ended.status == "failed" and navigator is not None and self._state.pose is not None:
+            self._destinations.arrived(self.state.pose)
+        if ended.status == "failed" and navigator is not None and self.state.pose is not None:
             self._hold()
         self._reports.tell(ended.status, ended.code, ended.detail, None)
         if self._inbox.active is not None:

@@ -109,9 +109,9 @@ def test_the_next_process_goes_round_what_the_last_one_learnt(tmp_path: Path) ->
     flat = Flat(boxes=[CHAIR], state_dir=tmp_path, lasting_after=2.0)
     flat.step(4.0)
     again = Flat(state_dir=tmp_path)
-    costmap = again.service._map
+    costmap = again.service.map
     assert costmap.clearance(*FRONT) < 0.15 and not (costmap.static_distance <= 0)[costmap.cell(*FRONT)]
-    assert flat.service._state.map_fit.share > 0.9
+    assert flat.service.state.map_fit.share > 0.9
 
 
 def test_the_fit_of_the_map_is_that_of_the_last_metres() -> None:

@@ -74,7 +74,7 @@ def test_where_two_rooms_look_alike_it_drives_to_where_they_differ() -> None:
     flat.step()
     for _ in range(60):
         flat.step()
-    state = flat.service._state
+    state = flat.service.state
     assert state.lost and len(state.everywhere.hypotheses) == 2
     flat.ask("goto end")
     assert flat.finish(120.0).status == "arrived"

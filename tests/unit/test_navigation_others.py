@@ -117,7 +117,7 @@ def test_robots_of_other_flats_and_what_is_no_place_are_passed_over() -> None:
         flat.bus.neighbours = {"anna": Flat().bus}
         flat.bus.neighbours["anna"].last[topics.DRIVE_INTENT.key] = msgspec.json.encode(told)
         flat.step(0.5)
-        assert not flat.service._neighbours.circles
+        assert not flat.service.neighbours.circles
 
 
 def test_a_robot_that_has_fallen_silent_stays_what_stands_there() -> None:
@@ -126,13 +126,13 @@ def test_a_robot_that_has_fallen_silent_stays_what_stands_there() -> None:
     flat.bus.neighbours = {"anna": Flat().bus}
     flat.bus.neighbours["anna"].last[topics.DRIVE_INTENT.key] = msgspec.json.encode(gone)
     flat.step(0.5)
-    assert flat.service._neighbours.circles
+    assert flat.service.neighbours.circles
     for _ in range(8):
         flat.step(0.5)
     heard = []
     for _ in range(30):
         flat.step(0.1)
-        heard += flat.service._neighbours.circles
+        heard += flat.service.neighbours.circles
     assert not heard, "its last message is still there to be read"
 
 

@@ -504,7 +504,7 @@ def test_a_box_that_the_robot_drives_past_does_not_walk() -> None:
     for x in np.concatenate([np.arange(0.0, 2.0, 0.025), np.arange(2.0, 0.0, -0.025)]).tolist():
         flat.true = flat.wheels = (x, 0.0, 0.0)
         flat.step(0.05)
-        assert not [o for o in flat.service._state.tracker.people() if box.distance(o.x, o.y) < 0.15]
+        assert not [o for o in flat.service.state.tracker.people() if box.distance(o.x, o.y) < 0.15]
 
 
 def test_who_stood_there_when_the_robot_came_is_seen_to_walk_on() -> None:
@@ -513,7 +513,7 @@ def test_who_stood_there_when_the_robot_came_is_seen_to_walk_on() -> None:
     for k in range(25):
         flat.boxes = [Rectangle(1.2, -0.04 * k, 0.25, 0.25, 0.0)]
         flat.step(0.05)
-    (one,) = [o for o in flat.service._state.tracker.people() if o.moves]
+    (one,) = [o for o in flat.service.state.tracker.people() if o.moves]
     assert one.vy == pytest.approx(-0.8, abs=0.3)
 
 

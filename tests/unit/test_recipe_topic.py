@@ -19,7 +19,7 @@ for _ in range(20):
     sim.step()
 navigation.step()
 sample = sim.sent(topics.GYROSCOPE)[-1]
-assert navigation.service._state.turning == sample.omega
+assert navigation.service.state.turning == sample.omega
 assert "base/gyroscope" in grants(Subject("sim")).puts and "base/gyroscope" in grants(Subject("navigation")).reads
 assert "base/gyroscope" not in grants(Subject("brain")).reads
 assert "| `base/gyroscope` | Gyroscope | sim | navigation | 100 | latest |" in interfaces.render()
