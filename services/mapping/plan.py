@@ -10,8 +10,7 @@ from scipy import ndimage
 
 from common.files.map_file import FREE
 from common.floor_plan import Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
-from common.free_sides import free_sides
-from common.free_sides import reached as reached_cells
+from common.free_sides import free_sides, reached
 from common.furniture_parts import BIN_WALL, LEG, LEG_INSET
 from common.geometry import Array, Rectangle
 from common.household import Household
@@ -62,9 +61,8 @@ def floor_plan(
     `unseen`: walls that only held the robot up.
     """
     bins = find_bins(grid, low)
-    surfaces = [s for s in _separate(find_surfaces(level)) if not _rim(s, bins)]
-    reached = _reached(states)
-    receptacles = _named(surfaces, bins, grid, reached)
+    surfaces = [s for s in without_nested(find_surfaces(level)) if not is_rim(s, bins)]
+    receptacles = _named(surfaces, bins, grid, reachable(states))
     taken = [r.outline.grown(0.06) for r in receptacles]
     walls = [*find_walls(lidar.points, lidar.eyes, taken), *unseen]
     furniture = _furniture(grid, walls, taken)
@@ -76,7 +74,7 @@ def floor_plan(
     return Household(
         name=name, low=_rounded(first - MARGIN), high=_rounded(last + MARGIN), home=home, walls=tuple(walls),
         furniture=tuple(furniture), rooms=tuple(find_rooms(grid, states, walls)), receptacles=tuple(receptacles),
-        delivery=_delivery(receptacles),
+        delivery=delivery_place(receptacles),
     )  # fmt: skip
 
 
@@ -84,9 +82,9 @@ def _rounded(point: Array) -> Vec2:
     return round(float(point[0]), 3), round(float(point[1]), 3)
 
 
-def _separate(surfaces: list[Surface]) -> list[Surface]:
-    """Without what is on a larger surface, where boxes and books have level tops, or in the body or between the legs
-    below it, where no arm gets to."""
+def without_nested(surfaces: list[Surface]) -> list[Surface]:
+    """The surfaces, largest first, without those over or under a larger one: tops of boxes on it, and what is in its
+    body or between its legs, where no arm gets to."""
     kept: list[Surface] = []
     for s in surfaces:
         on = any(o.outline.contains(s.outline.x, s.outline.y, 0.03) and s.height - o.height < 0.5 for o in kept)
@@ -95,18 +93,18 @@ def _separate(surfaces: list[Surface]) -> list[Surface]:
     return kept
 
 
-def _rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
+def is_rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
     """True for the rim of an open bin, which is level as well."""
     return any(o.contains(s.outline.x, s.outline.y, RING) and abs(s.height - rim) < RIM_BAND for o, rim in bins)
 
 
-def _reached(states: NDArray[np.uint8]) -> Cells:
-    """Cells on which the robot's middle may stay: the way there was seen by driving it."""
-    return reached_cells(ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2, RESOLUTION)
+def reachable(states: NDArray[np.uint8]) -> Cells:
+    """Mask of the cells at which the robot can be, by FREE, OCCUPIED or UNKNOWN for each cell."""
+    return reached(ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2, RESOLUTION)
 
 
-def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, ReceptacleKind]:
-    """What a surface is called by its measures, and the kind it is built as: on legs or with a body."""
+def kind_of_surface(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, ReceptacleKind]:
+    """The name of a surface by its measures, and the kind it is built as: on legs or with a body."""
     met = []
     for ax, ay in sides:
         # A cell's width inside the edge, where no wall behind it is met.
@@ -128,7 +126,7 @@ def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, Recepta
 def _named(
     surfaces: list[Surface], bins: list[tuple[Rectangle, float]], grid: Grid, reached: Cells
 ) -> list[Receptacle]:
-    """Receptacles that the robot gets to, numbered where several are of a sort."""
+    """The receptacles that the robot can reach, numbered where several have one name."""
     found: list[Receptacle] = []
     counts: dict[str, int] = {}
 
@@ -147,7 +145,7 @@ def _named(
 
     for s in surfaces:
         if sides := free_sides(s.outline, lambda spots: grid.at(spots, reached)):
-            add(*_kind(s, grid, sides), s.outline, s.height, 0.0, sides)
+            add(*kind_of_surface(s, grid, sides), s.outline, s.height, 0.0, sides)
     for outline, rim in bins:
         if sides := free_sides(outline, lambda spots: grid.at(spots, reached), BIN_WALL):
             add("bin", "bin", outline, 0.02, rim, sides)
@@ -155,7 +153,7 @@ def _named(
 
 
 def _furniture(grid: Grid, walls: list[Wall], taken: list[Rectangle]) -> list[Box]:
-    """Boxes around what neither walls nor receptacles explain."""
+    """Boxes around the occupied cells that neither walls nor receptacles explain."""
     cells = grid.walls | (grid.covered & (grid.highest > 0.12))
     rows, columns = np.nonzero(cells)
     if not len(rows):
@@ -172,13 +170,13 @@ def _furniture(grid: Grid, walls: list[Wall], taken: list[Rectangle]) -> list[Bo
         rows, columns = np.nonzero((labels == n) & left)
         if len(rows) < 2:
             continue
-        for part in _filled(grid.points((rows, columns))):
+        for part in compact_parts(grid.points((rows, columns))):
             found.append(_box(f"furniture {len(found) + 1}", part, grid))
     return found
 
 
-def _filled(points: Array) -> list[Array]:
-    """The middles of cells (n, 2) in parts that fill the rectangle around them: what goes round a corner is cut."""
+def compact_parts(points: Array) -> list[Array]:
+    """The middles of cells (n, 2) cut into parts that fill their bounding rectangles, as at a corner of furniture."""
     outline = fit_rectangle(points).grown(RESOLUTION / 2)
     if len(points) * RESOLUTION**2 >= WHOLE * outline.length * outline.width or outline.length < 3 * RESOLUTION:
         return [points]
@@ -186,7 +184,7 @@ def _filled(points: Array) -> list[Array]:
     near = along < 0.0
     if near.all() or not near.any():
         return [points]
-    return [*_filled(points[near]), *_filled(points[~near])]
+    return [*compact_parts(points[near]), *compact_parts(points[~near])]
 
 
 def _box(name: str, cells: Array, grid: Grid) -> Box:
@@ -204,8 +202,8 @@ def _box(name: str, cells: Array, grid: Grid) -> Box:
     )  # fmt: skip
 
 
-def _delivery(receptacles: list[Receptacle]) -> str:
-    """What the robot brings things to: the surface before its home, else the nearest; seats only if there is no other.
+def delivery_place(receptacles: list[Receptacle]) -> str:
+    """The surface that things are brought to: the one before the home pose, else the nearest; seats as a last resort.
 
     "" where no surface was found.
     """

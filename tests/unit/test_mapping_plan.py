@@ -11,7 +11,7 @@ from common.free_sides import free_sides
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import Grid
-from services.mapping.plan import _delivery, _filled, _kind, _reached, _rim, _separate
+from services.mapping.plan import compact_parts, delivery_place, is_rim, kind_of_surface, reachable, without_nested
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -77,10 +77,10 @@ def test_a_place_behind_a_narrow_passage_is_reached() -> None:
     states = np.full((60, 120), OCCUPIED, np.uint8)
     states[2:58, 2:58], states[2:58, 62:118] = FREE, FREE
     states[24:36, 58:62] = FREE
-    reached = _reached(states)
+    reached = reachable(states)
     assert reached[30, 30] and reached[30, 90] and not reached[30, 60]
     states[24:36, 58:62] = OCCUPIED
-    assert not (_reached(states)[30, 30] and _reached(states)[30, 90])
+    assert not (reachable(states)[30, 30] and reachable(states)[30, 90])
 
 
 @pytest.mark.parametrize(("width", "free"), [(0.42, (0.08, 0.14)), (2.0, (0.6, 0.8))])
@@ -113,14 +113,14 @@ def test_a_high_or_a_large_ring_is_no_bin() -> None:
 def test_what_goes_round_a_corner_is_cut() -> None:
     line = np.arange(0.025, 2.0, 0.05)
     corner = np.concatenate([np.column_stack([line, 0 * line]), np.column_stack([0 * line, line])])
-    parts = _filled(corner)
+    parts = compact_parts(corner)
     assert len(parts) > 1 and sum(map(len, parts)) == len(corner)
     for part in parts:
         inside = (part > 0.3).all(axis=1)
         assert not inside.any()
         spread = np.sort(np.ptp(part, axis=0))
         assert spread[0] < 0.35, "no part reaches into the room"
-    assert len(_filled(np.column_stack([line, 0 * line]))) == 1
+    assert len(compact_parts(np.column_stack([line, 0 * line]))) == 1
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.5, -0.6])
@@ -210,8 +210,8 @@ def test_what_is_left_of_a_wall_beside_an_opening_is_one_up_to_its_corner() -> N
 def test_the_rim_of_a_bin_is_no_shelf() -> None:
     rim = Surface(Rectangle(0.51, -0.27, 0.38, 0.37), 0.41, np.empty((0, 2)))
     hole = Rectangle(0.51, -0.27, 0.34, 0.34)
-    assert _rim(rim, [(hole, 0.40)])
-    assert not _rim(rim._replace(height=0.75), [(hole, 0.40)]) and not _rim(rim, [(hole._replace(x=1.0), 0.40)])
+    assert is_rim(rim, [(hole, 0.40)])
+    assert not is_rim(rim._replace(height=0.75), [(hole, 0.40)]) and not is_rim(rim, [(hole._replace(x=1.0), 0.40)])
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ def test_what_has_a_body_is_named_by_its_measures(length: float, width: float, n
     along = [(x, y, 0.4) for x in np.arange(-length / 2, length / 2 + 0.01, 0.02) for y in (-width / 2, width / 2)]
     grid = grid_of(np.array(along))
     grid.hits[grid.cells(np.array(along)[:, :2])] = 3
-    assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (0.0, -1.0)))[0] == name
+    assert kind_of_surface(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (0.0, -1.0)))[0] == name
 
 
 @pytest.mark.parametrize(("length", "width"), [(0.42, 0.42), (0.9, 0.5), (1.6, 0.8)])
@@ -235,7 +235,7 @@ def test_what_stands_on_legs_is_a_table_however_short_its_sides(length: float, w
         legs += [(x - i * a, y - j * b) for a in np.arange(0.0, 0.051, 0.01) for b in np.arange(0.0, 0.051, 0.01)]
     grid.hits[grid.cells(np.array(legs))] = 3
     outline = Rectangle(0.0, 0.0, length, width)
-    assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (1.0, 0.0)))[0] == "table"
+    assert kind_of_surface(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (1.0, 0.0)))[0] == "table"
 
 
 def test_things_are_brought_to_a_table_and_not_to_the_sofa_before_it() -> None:
@@ -248,8 +248,8 @@ def test_things_are_brought_to_a_table_and_not_to_the_sofa_before_it() -> None:
         surface("bench", -1.5),
         surface("bin", 0.5, 0.4),
     )
-    assert _delivery([sofa, bin_, behind, table]) == "table"
-    assert _delivery([sofa, bin_]) == "sofa" and _delivery([bin_]) == ""
+    assert delivery_place([sofa, bin_, behind, table]) == "table"
+    assert delivery_place([sofa, bin_]) == "sofa" and delivery_place([bin_]) == ""
 
 
 def test_what_is_inside_or_below_a_surface_is_none() -> None:
@@ -258,8 +258,8 @@ def test_what_is_inside_or_below_a_surface_is_none() -> None:
 
     bed, other = surface(0.0, 0.47, 2.0), surface(3.0, 0.4, 1.0)
     book, board = surface(0.2, 0.5, 0.3), surface(-0.3, 0.38, 1.5)
-    assert _separate([bed, board, other, book]) == [bed, other]
-    assert _separate([bed, surface(0.0, 1.2, 0.9)]) != [bed], "a shelf high above it"
+    assert without_nested([bed, board, other, book]) == [bed, other]
+    assert without_nested([bed, surface(0.0, 1.2, 0.9)]) != [bed], "a shelf high above it"
 
 
 def test_a_corner_behind_which_few_rays_have_passed_is_looked_round() -> None:

@@ -147,7 +147,7 @@ class Course:
     def __init__(self, surveys: list[Survey]) -> None:
         numbers = count()
         self.course = Exploration(MappingConfig(), lambda name: f"{name}-{next(numbers)}")
-        self.surveys, self.goals, self.saves = list(surveys), [], 0
+        self.surveys, self.goals, self.barred = list(surveys), [], []
         self.status = "arrived"
 
     def run(self, seconds: float = 200.0) -> None:
@@ -158,11 +158,13 @@ class Course:
             if wanted == "picture":
                 self.course.pictures += 1
             elif wanted == "survey":
+                self.barred.append([*self.course.barred])
                 self.course.surveyed(self.surveys.pop(0) if self.surveys else Survey(0, 1.0, None))
             elif isinstance(wanted, m.NavGoal):
                 self.goals.append(wanted)
-                pose = (wanted.x, wanted.y, wanted.theta) if self.status == "arrived" else pose
-                feedback = m.NavigationFeedback(goal_id=wanted.id, status=self.status)  # type: ignore[arg-type]
+                status = "arrived" if (wanted.x, wanted.y) == pose[:2] else self.status
+                pose = (wanted.x, wanted.y, wanted.theta) if status == "arrived" else pose
+                feedback = m.NavigationFeedback(goal_id=wanted.id, status=status)  # type: ignore[arg-type]
                 self.course.heard(feedback, now)
 
 
@@ -179,9 +181,9 @@ def test_it_looks_around_follows_the_surveys_and_drives_home() -> None:
 def test_a_view_that_is_not_reached_is_barred() -> None:
     course = Course([Survey(1, 4.0, View((1.0, 0.0, 0.5), 10.0))])
     course.status = "failed"
-    course.course._turns = []
-    course.run(20.0)
-    assert (course.goals[0].x, course.goals[0].y) == (1.0, 0.0)
+    course.run(60.0)
+    view = course.goals[FIRST_LOOKS - 1]
+    assert (view.x, view.y) == (1.0, 0.0) and course.barred[:2] == [[], [(1.0, 0.0)]]
 
 
 def test_a_blocked_view_is_tried_once_more_at_the_most() -> None:
@@ -205,7 +207,6 @@ def test_a_blocked_view_is_tried_once_more_at_the_most() -> None:
 
 def test_told_to_finish_it_drives_home_at_once() -> None:
     course = Course([Survey(9, 4.0, View((1.0, 0.0, 0.5), 10.0))] * 50)
-    course.course._turns = []
     course.course.finish()
     course.run(20.0)
     assert course.course.phase == "saving" and len(course.goals) <= 1

@@ -85,15 +85,16 @@ def test_nothing_to_go_on_with_ends_the_start(tmp_path: Path) -> None:
 
 
 def test_nonsense_is_dropped(tmp_path: Path) -> None:
-    robot = Still(out=str(tmp_path))
-    robot.step(1.0)
+    robot = Still(camera=False, out=str(tmp_path))
     for field, value in (("depth", b"12"), ("fx", 0.0), ("fx", float("nan")), ("position", (float("inf"), 0.0, 0.0))):
+        robot.requests.clear()
+        robot.step(3.0)
         bad = image()
         setattr(bad, field, value)
-        bad.id, bad.t = "mapping-0-1", robot.now
-        robot.service._asked = {bad.id: True}
+        bad.id, bad.t = msgspec.json.decode(robot.requests[-1])["id"], robot.now
         robot.bus.send(topics.HEAD_RGBD, bad)
         robot.step(0.3)
+    assert robot.io.drops[topics.HEAD_RGBD.key], "a picture without a focal length counts once the camera is known"
     for t in (float("nan"), float("inf"), -5.0):
         robot.bus.send(topics.ODOMETRY, m.Odometry(t=t, x=float("nan"), y=1e30, theta=0.0))
         robot.bus.send(topics.SCAN, m.LaserScan(t=t, ranges=np.full(3, np.nan, "<f4").tobytes()))
