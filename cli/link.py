@@ -117,7 +117,7 @@ class Watch(Generic[M]):
     """Silence [s] after which the present value is asked for: an outage of the router may have cost one."""
 
     def __init__(self, link: Link, topic: Topic[M]) -> None:
-        self._link, self._topic = link, topic
+        self._link, self.topic = link, topic
         self._inbox: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self.last: M | None = None
         self._kept = link.session.declare_subscriber(topic.key, lambda s: self._inbox.put(s.payload.to_bytes()))
@@ -127,15 +127,15 @@ class Watch(Generic[M]):
         """The next message; None after `timeout` seconds without one."""
         end = monotonic() + timeout
         while True:
-            if self._topic.latched and self._inbox.empty() and monotonic() - self._refreshed > self.REFRESH:
+            if self.topic.latched and self._inbox.empty() and monotonic() - self._refreshed > self.REFRESH:
                 self._refreshed = monotonic()
-                present = self._link.latest(self._topic)
+                present = self._link.latest(self.topic)
                 if present is not None and present != self.last and self._inbox.empty():
                     self.last = present
                     return present
             try:
                 payload = self._inbox.get(timeout=min(0.2, max(0.0, end - monotonic())))
-                self.last = codec.decode(self._topic, payload)
+                self.last = codec.decode(self.topic, payload)
                 self._refreshed = monotonic()
                 return self.last
             except (queue.Empty, codec.DecodeError):
@@ -162,7 +162,7 @@ class Watch(Generic[M]):
             CliError: its writer does not answer.
         """
         if (value := self.next(FIRST)) is None:
-            raise unanswered(self._topic)
+            raise unanswered(self.topic)
         return value
 
     def close(self) -> None:

@@ -135,7 +135,7 @@ class DashboardService:
                 self._handle_action(event, now)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
-            elif isinstance(event, Click) and (self.panels.clicks or self._commands.naming):
+            elif isinstance(event, Click) and (self.panels.clicks.value or self._commands.naming):
                 world = self._io.latest(topics.WORLD_OBJECTS)
                 objects = world.objects if world is not None else []
                 picked = pick(event.origin, event.direction, self.scene.view.drawing.flat, objects)

@@ -111,7 +111,7 @@ def test_a_place_that_is_called_as_its_room_is_written_once(drawn: Page) -> None
     ]
     drawn.bus.send(topics.HOUSEHOLD_PARTS, m.HomeParts(parts=parts))
     drawn.step()
-    shown = {label.text: label.position[0] for label in drawn.service.scene.view._parts}
+    shown = {label.text: label.position[0] for label in drawn.service.scene.view.part_labels}
     assert shown == {"kitchen": 2.0, "counter": 3.0}
 
 
@@ -175,7 +175,7 @@ def test_clicks_obey_the_check_box(drawn: Page) -> None:
     drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1
-    drawn.service.panels._clicks.value = False
+    drawn.service.panels.clicks.value = False
     drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1

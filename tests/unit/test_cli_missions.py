@@ -89,7 +89,7 @@ def test_what_is_said_to_a_robot_at_work_is_answered(
 ) -> None:
     robot = AtWork(then)
     monkeypatch.setattr("cli.missions.say.linked", lambda args: contextlib.nullcontext(robot))
-    monkeypatch.setattr(Watch, "__init__", lambda self, link, topic: setattr(self, "_topic", topic))
-    monkeypatch.setattr(Watch, "next", lambda self, timeout: robot.next(self._topic))
+    monkeypatch.setattr(Watch, "__init__", lambda self, link, topic: setattr(self, "topic", topic))
+    monkeypatch.setattr(Watch, "next", lambda self, timeout: robot.next(self.topic))
     assert main.main(["say", "what", "are", "you", "doing"]) == 0
     assert printed in capsys.readouterr().out.splitlines()

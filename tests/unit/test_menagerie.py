@@ -230,10 +230,10 @@ def test_the_model_s_own_name_is_the_official_robot(root: Path, monkeypatch: pyt
     assert same == dressed != plain
 
 
-def test_a_model_under_another_file_name_is_found(tmp_path: Path) -> None:
+def test_a_model_under_another_file_name_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     standin.write(tmp_path, file="my_tidybot.xml")
-    folder = tmp_path / "stanford_tidybot"
-    assert menagerie._below(folder) == folder / "my_tidybot.xml"
+    monkeypatch.setenv(menagerie.ROOT, str(tmp_path))
+    assert menagerie.find() == tmp_path / "stanford_tidybot" / "my_tidybot.xml"
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,10 @@ BLANK = np.full((12, 16, 3), 32, np.uint8)
 
 
 class Panels:
-    """Handles of everything beside the view; texts are sent only when they change."""
+    """Handles of everything beside the view; texts are sent only when they change.
+
+    `follow`, `scan`, `costmap`, `grasps`, `labels` and `clicks` are check boxes, whose `value` a visitor sets.
+    """
 
     def __init__(self, server: viser.ViserServer, width: int, height: int) -> None:
         gui = server.gui
@@ -49,24 +52,17 @@ class Panels:
             # Not in a tab of their own: one more would put the row of tabs into two lines.
             self._plots_below = gui.add_folder("plots")
         with tabs.add_tab("View"):
-            self._follow = gui.add_checkbox("follow the robot", initial_value=True)
-            self._scan = gui.add_checkbox("lidar", initial_value=True)
-            self._costmap = gui.add_checkbox("costmap", initial_value=True)
-            self._grasps = gui.add_checkbox("grasp candidates", initial_value=True)
-            self._labels = gui.add_checkbox("names of the objects", initial_value=True)
-            self._clicks = gui.add_checkbox(
+            self.follow = gui.add_checkbox("follow the robot", initial_value=True)
+            self.scan = gui.add_checkbox("lidar", initial_value=True)
+            self.costmap = gui.add_checkbox("costmap", initial_value=True)
+            self.grasps = gui.add_checkbox("grasp candidates", initial_value=True)
+            self.labels = gui.add_checkbox("names of the objects", initial_value=True)
+            self.clicks = gui.add_checkbox(
                 "clicks command the robot",
                 initial_value=True,
                 hint="A click on the floor sends the base there, a click on an object has it fetched.",
             )
         self._gui = gui
-
-    follow = property(lambda self: bool(self._follow.value))
-    scan = property(lambda self: bool(self._scan.value))
-    costmap = property(lambda self: bool(self._costmap.value))
-    grasps = property(lambda self: bool(self._grasps.value))
-    labels = property(lambda self: bool(self._labels.value))
-    clicks = property(lambda self: bool(self._clicks.value))
 
     def wanted(self, camera: str) -> bool:
         """A visitor wants to see this camera's pictures."""

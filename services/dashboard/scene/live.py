@@ -60,33 +60,33 @@ class LiveScene:
             self.base = (q.get("base_x", 0.0), q.get("base_y", 0.0), q.get("base_yaw", 0.0))
         view.pose(q, self.base, q.get("gripper", 0.0))
         if pose is not None or joints is not None:
-            self._camera.step(self.base, panels.follow)
+            self._camera.step(self.base, panels.follow.value)
         for scan in io.take_all(topics.SCAN):
             try:
-                view.scan(scan, self.base, panels.scan)
+                view.scan(scan, self.base, panels.scan.value)
             except ValueError as error:
                 io.count_drop(topics.SCAN.key, str(error))
         for path in io.take_all(topics.NAV_PATH):
             self._path = path.points
             view.path(path.points)
         self._overlay()
-        view.parts(io.latest(topics.HOUSEHOLD_PARTS), panels.labels)
+        view.parts(io.latest(topics.HOUSEHOLD_PARTS), panels.labels.value)
         world = io.latest(topics.WORLD_OBJECTS)
         if world is not None and (world is not self._world or now >= self._ghosts_at):
             self._world, self._ghosts_at = world, now + GHOSTS
-            view.objects(world.objects, t, self._ghost_after, panels.labels)
+            view.objects(world.objects, t, self._ghost_after, panels.labels.value)
 
     def _overlay(self) -> None:
         """What navigation and manipulation think, and what the brain asks about."""
         brain = self._io.latest(topics.BRAIN_STATE)
         self._layers.offered(brain.offered if brain is not None else [])
         try:
-            self._layers.costmap(self._io.latest(topics.COSTMAP), self._panels.costmap)
+            self._layers.costmap(self._io.latest(topics.COSTMAP), self._panels.costmap.value)
         except ValueError as error:
             self._io.count_drop(topics.COSTMAP.key, str(error))
         found, doing = self._io.latest(topics.GRASPS), self._io.latest(topics.MANIPULATION_STATUS)
         under_path = doing is not None and doing.status == "executing" and doing.phase in GRABBING
-        shown = (found, under_path and self._panels.grasps)
+        shown = (found, under_path and self._panels.grasps.value)
         if shown != self._seen_grasps:
             self._seen_grasps = shown
             self._layers.grasps(*shown)

@@ -39,7 +39,7 @@ class View:
         self._scan: Any = None
         self._path: Any = None
         self._paths: dict[str, str] = {}
-        self._parts: list[Any] = []
+        self.part_labels: list[Any] = []
         self._shown_parts: tuple[m.HomeParts | None, bool] = (None, False)
         self.drawing = Drawing(None, None)
         self._scene.set_up_direction("+z")
@@ -183,13 +183,13 @@ class View:
         if shown == self._shown_parts:
             return
         self._shown_parts = shown
-        for node in self._parts:
+        for node in self.part_labels:
             node.remove()
         parts = known.parts if known is not None and labels else []
         # A standing place is often called by its room, which has its name already.
         rooms = {one.name for one in parts if one.kind == "room"}
         parts = [one for one in parts if one.kind == "room" or one.name not in rooms]
-        self._parts = [
+        self.part_labels = [
             self._scene.add_label(f"/parts/{n}", one.name, position=(one.x, one.y, PART), font_screen_scale=0.7)
             for n, one in enumerate(parts)
         ]
