@@ -6,6 +6,8 @@ from common.messages.base import IDENTITY, Message, Quat, Vec3
 
 ShapeFamily = Literal["", "round", "box", "bowl", "ball", "long", "irregular"]
 """The family of a measured shape: turned about its axis, box, open vessel, ball, longer than wide, none of these."""
+End = Literal["open", "closed", ""]
+"""What an end of an object was seen to be, \"\" when too little tells."""
 
 
 class ObjectRef(Message):
@@ -37,6 +39,7 @@ class WorldObject(Message):
     and how much of it has each colour, each adding up to 1; empty where nothing was measured. `measured`: `size` was
     measured and not looked up in the household; `spread`: standard deviation [m] of its extents and position.
     `points`: what was seen of its surface, int16 (n, 3) [mm], little endian, in map axes from `position`.
+    `top`: what its upper end is, as it rests.
     """
 
     label: str
@@ -61,6 +64,7 @@ class WorldObject(Message):
     measured: bool = False
     spread: float = 0.0
     points: bytes = b""
+    top: End = ""
 
 
 class WorldObjects(Message):

@@ -15,6 +15,7 @@ from common.floor_plan import Vec3
 from common.geometry import Array, Mask
 from common.household import Household
 from common.kinds import kind_of
+from common.messages import End
 from common.thing import Thing
 from services.perception import unlisted
 from services.perception.detection import Detection
@@ -100,8 +101,8 @@ class ClassicalDetector:
         best = hypotheses[0]
         score, spec, size, fit = best.score, best.spec, best.rest.size, best.fit
         tilt, kind = best.rest.tilt, kind_of(spec.kind)
-        either_way = "upside down" in kind.rests and kind.straight
-        if either_way and not tilt and toppled.closed_above(kind, size, segment.points, segment.surface.height, fit):
+        end = _end(spec, view, segment, fit) if tilt != LYING and "upside down" in kind.rests else ""
+        if kind.straight and end == "closed":
             # The walls look alike either way up.
             tilt = math.pi
         second = next((rival.score for rival in hypotheses if rival.spec is not spec), WORST)
@@ -126,6 +127,7 @@ class ClassicalDetector:
             share=min(1.0, len(segment.rows) / _pixels(view, position, size)),
             tilt=tilt,
             yaw_seen=yaw_seen,
+            end=end,
             shape=unlisted.family_of(kind, size),
             kinds={spec.kind: 1.0},
             colours={spec.colour: 1.0},
@@ -151,9 +153,7 @@ class ClassicalDetector:
                     tall = min(tall, 1.0)
                 if tall <= WORST:
                     fit = _fit(spec, rest, view, segment)
-                    if rest.tilt == math.pi and not toppled.closed_above(
-                        kind_of(spec.kind), spec.size, segment.points, segment.surface.height, fit
-                    ):
+                    if rest.tilt == math.pi and _end(spec, view, segment, fit) != "closed":
                         continue
                     score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
                     found.append(Hypothesis(score, spec, rest, fit))
@@ -193,6 +193,12 @@ def _fit(spec: Thing, rest: RestingPose, view: View, segment: Segment) -> shapes
     if rest.tilt and "side" in kind.rests:
         return toppled.fit(kind, spec.size, segment.points, floor, camera)
     return shapes.fit(kind, rest.size, segment.points, floor, camera, segment.ends)
+
+
+def _end(spec: Thing, view: View, segment: Segment, fit: shapes.Fit) -> End:
+    """What the upper end is: the walls alone fit a vessel either way up, all the more when a part of it is hidden."""
+    radius = kind_of(spec.kind).foot(spec.size)
+    return unlisted.end_above(view, segment, (fit.x, fit.y), radius, spec.size[2])
 
 
 def _pixels(view: View, position: Vec3, size: Vec3) -> float:

@@ -6,8 +6,7 @@ import numpy as np
 
 from common.floor_plan import Vec3
 from common.geometry import Array
-from common.messages import ShapeFamily
-from services.perception.shapes.measurement import End
+from common.messages import End, ShapeFamily
 
 
 @dataclass(frozen=True)

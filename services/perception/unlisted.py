@@ -6,15 +6,16 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from common.geometry import Array, cell_means
+from common.geometry import Array, Point, cell_means
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
-from common.messages import ShapeFamily
+from common.messages import End, ShapeFamily
 from common.naming.looks import OTHER, Measures, likely
 from services.perception.detection import Detection
 from services.perception.segments.segment import DEPTH_NOISE, Segment
 from services.perception.shapes.handle import parted
 from services.perception.shapes.measure import measure
 from services.perception.shapes.measurement import LEVEL, Measurement
+from services.perception.shapes.upper_end import upper_end
 from services.perception.views import colour
 from services.perception.views.view import View
 
@@ -43,6 +44,11 @@ def describe(view: View, segment: Segment, found: Measurement) -> Detection:
     tilt = _tilt(found, kinds)
     confidence = SURE * (0.45 + 0.55 * min(1.0, len(segment.rows) / FEW)) * (CUT if segment.cut else 1.0)
     kind = next(iter(kinds))
+    end = found.end
+    if not end and not found.tilt and found.family in ("box", "round"):
+        end = end_above(
+            view, segment, (found.x, found.y), min(found.size[:2]) / 2 * (found.profile or (1.0,))[-1], height
+        )
     return Detection(
         label="",
         kind=kind,
@@ -56,7 +62,7 @@ def describe(view: View, segment: Segment, found: Measurement) -> Detection:
         known=False,
         whole=not segment.cut,
         tilt=tilt,
-        end=found.end,
+        end=end,
         yaw_seen=found.top_seen if found.tilt else found.family != "round" or not math.isnan(found.handle),
         shape=found.family,
         kinds=kinds,
@@ -103,6 +109,13 @@ def measured(view: View, segment: Segment, hanging: NDArray[np.bool_] | None = N
         segment.dark,
         handle if hanging is None else handle | hanging,
     )
+
+
+def end_above(view: View, segment: Segment, middle: Point, radius: float, height: float) -> End:
+    """What the upper end of a segment is, `radius` and `height` [m] over its surface."""
+    down = np.array([0.0, 0.0, segment.surface.height])
+    noise = noise_of(view, segment) if len(segment.points) else 0.0
+    return upper_end(segment.points - down, middle, radius, height, view.position - down, noise)
 
 
 def noise_of(view: View, segment: Segment) -> float:

@@ -73,6 +73,22 @@ def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
 
 
 @pytest.mark.parametrize(
+    ("asked", "lay", "top", "fault"),
+    [
+        ("black mug", True, "open", ""),
+        ("black mug", True, "closed", "TOPPLED"),
+        ("black mug", True, "", "UNTOLD"),
+        ("black mug", False, "", ""),
+        ("black bottle", True, "", ""),
+    ],
+)
+def test_a_vessel_that_lay_stands_when_it_is_seen_to_be_open_above(asked: str, lay: bool, top: Any, fault: str) -> None:
+    unlisted = msgspec.structs.replace(SCENE, things=())
+    rest = Rest(kind_meant(asked, unlisted), lay=lay)
+    assert judge_placement(pose(label=asked), asked, "delivery tray", unlisted, rest=rest, top=top).fault == fault
+
+
+@pytest.mark.parametrize(
     ("asked", "size", "fault"),
     [
         ("the green box", (0.19, 0.13, 0.05), "TOPPLED"),
@@ -136,7 +152,7 @@ STANDING, LYING_BOX, LYING_WEDGE = (0.07, 0.07, 0.22), (0.22, 0.07, 0.07), (0.11
     ("asked", "sights", "now", "fault"),
     [
         # It fell, was stood up again, and no end of a carton is like the other.
-        ("milk carton", [("white box", STANDING), ("white box", LYING_BOX)], ("white box", STANDING), "UNCHECKED"),
+        ("milk carton", [("white box", STANDING), ("white box", LYING_BOX)], ("white box", STANDING), "UNTOLD"),
         ("milk carton", [("white box", STANDING)], ("white box", STANDING), ""),
         ("white box", [("white box", LYING_BOX)], ("white box", STANDING), ""),
         # What was a box lies as one, whatever it looks like now.
@@ -238,6 +254,7 @@ def test_what_lies_is_said_picked_up_and_put_right() -> None:
     bench.did(grab)
     bench.drove(bench.nav(2))
     bench.did(bench.manip(4))
+    show(bench, "open")
     look(bench, 5)
     assert ended(bench).outcome == "delivered"
     said = (
@@ -252,6 +269,39 @@ def test_what_two_pictures_show_lying_is_picked_up_though_a_third_shows_it_stand
         look(bench, count, tilt=tilt)
     approach_again(bench, 2)
     assert bench.manip(3).goal == "grab"
+
+
+@pytest.mark.parametrize(("second", "outcome"), [("open", "delivered"), ("", "failed")])
+def test_what_lay_and_does_not_show_how_it_stands_is_looked_at_from_aside(second: m.End, outcome: str) -> None:
+    bench = brought()
+    delivery = bench.brain.context.mission.delivery
+    delivery.rests = {item: msgspec.structs.replace(rest, lay=True) for item, rest in delivery.rests.items()}
+    show(bench, "")
+    look(bench, 2)
+    turned(bench)
+    show(bench, second)
+    look(bench, 3)
+    last = ended(bench)
+    assert last.outcome == outcome
+    assert outcome == "delivered" or "I cannot tell whether the red mug on the delivery tray" in bench.texts(SPEECH)[-1]
+
+
+def test_what_cannot_be_told_does_not_unsay_that_it_lies() -> None:
+    bench = brought()
+    delivery = bench.brain.context.mission.delivery
+    delivery.rests = {item: msgspec.structs.replace(rest, lay=True) for item, rest in delivery.rests.items()}
+    look(bench, 2, tilt=LYING)
+    look(bench, 3)
+    look(bench, 4, tilt=LYING)
+    approach_again(bench, 2)
+    assert bench.manip(3).goal == "grab"
+
+
+def show(bench: Bench, top: m.End) -> None:
+    """Perception tells what the upper end of the red mug is."""
+    mug = m.WorldObject(label="red mug", kind="mug", colour="red", position=TRAY, id="object-1", top=top)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[mug]))
+    bench.step()
 
 
 def turned(bench: Bench, arrived: bool = True) -> m.NavGoal:

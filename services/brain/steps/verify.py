@@ -139,10 +139,9 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     asked = (item for item, one in mission.search.found.items() if one.label == label)
     rest = next((rest for item in asked if (rest := mission.delivery.rests.get(item))), Rest())
     seen = next((o for o in ctx.objects if o.id == pose.id and o.id), None) or ctx.known_object(label)
-    # A vessel that lay may have been stood on its mouth, and then looks like a can.
     alike = any(kind_of(k).ends_alike for k in (seen.kind, *seen.kinds[:1])) if seen else False
-    shape, unlike = seen.shape if seen else "", mission.delivery.unlike == label
-    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, shape, unlike)
+    shape, top, unlike = seen.shape if seen else "", seen.top if seen else "", mission.delivery.unlike == label
+    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike, top, shape, unlike)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
@@ -159,7 +158,12 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     taken = next((found.position for found in mission.search.found.values() if found.label == label), None)
     if finding.fault == "NOT_SEEN" and taken is not None:
         mission.delivery.absent[label] = taken, ctx.gripper.put_down.get(label, ctx.now)
+    if (failure := mission.failure) is not None and (failure.code, finding.fault) == ("TOPPLED", "UNTOLD"):
+        # What cannot be told does not unsay what was seen.
+        return ctx.fail(failure.stage, failure.code, failure.detail, failure.spoken)
     spoken = f"I did not put down the {label} well: {finding.words}."
+    if finding.fault == "UNTOLD":
+        spoken = f"I put down the {label}, but {finding.words}."
     return ctx.fail("RELEASING", finding.fault, finding.evidence, spoken)
 
 
@@ -196,12 +200,12 @@ def _careless(ctx: Context, code: str, what: str) -> bool:
 def verify_placement(ctx: Context, target: str, near: str = "") -> Behaviour:
     """Look once physics has settled; a fault is believed when another picture shows it too.
 
-    What is not to be seen is looked for from a little aside.
+    What is not to be seen, or not well enough to tell how it stands, is looked at from a little aside.
     """
     aside = Sequence("aside", TurnAside("turn_aside", ctx), Settle("come_to_rest", ctx))
-    moved = Condition("hidden_by_the_arm", aside, lambda: looks.used > 0 and unseen(ctx))
+    moved = Condition("hidden_by_the_arm", aside, lambda: looks.used > 0 and _failed_with(ctx, "NOT_SEEN", "UNTOLD"))
     look = Sequence("look", moved, VerifyPlacement("check", ctx, target, near))
-    looks = Retry("look_at_it", ctx, look, LOOKS - 1, again=lambda: is_misplaced(ctx))
+    looks = Retry("look_at_it", ctx, look, LOOKS - 1, again=lambda: _failed_with(ctx, *MISPLACED_CODES, "UNTOLD"))
     return looks
 
 
@@ -217,11 +221,14 @@ def release_and_verify(ctx: Context, node_id: str, goal: str, target: str, near:
 
 def unseen(ctx: Context) -> bool:
     """The last look did not show the object."""
-    failure = ctx.mission.failure
-    return failure is not None and failure.code == "NOT_SEEN"
+    return _failed_with(ctx, "NOT_SEEN")
 
 
 def is_misplaced(ctx: Context) -> bool:
     """The last look showed the object not where, or not as, it belongs."""
+    return _failed_with(ctx, *MISPLACED_CODES)
+
+
+def _failed_with(ctx: Context, *codes: str) -> bool:
     failure = ctx.mission.failure
-    return failure is not None and failure.code in MISPLACED_CODES
+    return failure is not None and failure.code in codes

@@ -10,9 +10,9 @@ from common.geometry import quat_matrix
 from common.household import Household
 from common.kinds import kind_of, laid_on_a_side
 from common.messages import ObjectPose, ObjectRef
-from common.messages.perception import ShapeFamily
+from common.messages.perception import End, ShapeFamily
 
-Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED", "UNCHECKED"]
+Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED", "UNTOLD"]
 TIPPED = 0.35
 """Tilt [rad] from which an object does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
@@ -84,15 +84,17 @@ def judge_placement(
     beside: ObjectRef | None = None,
     rest: Rest = Rest(),  # noqa: B008 it is frozen
     alike: bool = False,
+    top: End = "",
     shape: ShapeFamily = "",
     unlike: bool = False,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs. `rest`: how it rested before; `alike`:
-    by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head. `shape`: how it is
-    measured now, "" if it was not; `unlike`: a look before, since it was put down, showed a shape that it has not
-    where it stands; that the next one shows another does not tell which of them is right.
+    by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head; `top`: what its upper
+    end is, which tells of a vessel. `shape`: how it is measured now, "" if it was not; `unlike`: a look before, since
+    it was put down, showed a shape that it has not where it stands; that the next one shows another does not tell which
+    of them is right.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
     seen = spec.kind if spec else kind_meant(label, household)
@@ -109,14 +111,16 @@ def judge_placement(
     if wanted is not None and on is not wanted:
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
     stands = [kind_of(kind) for kind in kinds if kind_of(kind).upright]
-    in_bin, closed = on is not None and bool(on.depth), rest.lay and alike
-    over = tilt > TIPPED or (closed and any("upside down" in kind.rests for kind in stands))
+    in_bin, lay = on is not None and bool(on.depth), rest.lay
+    vessel = any("upside down" in kind.rests for kind in stands)
+    over = tilt > TIPPED or (lay and vessel and (top == "closed" or (alike and not top)))
     if stands and over and not in_bin:
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
-    if closed and any(not kind.ends_alike for kind in stands) and not in_bin:
+    untold = not top if vessel else alike and any(not kind.ends_alike for kind in stands)
+    if lay and untold and not in_bin:
         words = f"I cannot tell whether the {label} {where} stands on its head"
-        return Finding("UNCHECKED", words, measured)
+        return Finding("UNTOLD", words, measured)
     unknown = not rest.asked and spec is None and not stands
     lower = unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood)
     turned = (unknown or stands) and rest.stood and rest.shape in TURNED

@@ -21,10 +21,6 @@ STARTS = (0.0, math.pi / 4, math.pi / 2, 3 * math.pi / 4)
 """Directions of the axis [rad] from which the fit begins, each both ways round."""
 FOLLOWED = 4
 """Starts that are followed to their end: the two ends of a shape differ little from the side."""
-LEVEL = 0.008
-"""How near [m] the height of a vessel a point of its foot is, when that is on top: twice the noise at 1.5 m."""
-CLOSED = 0.06
-"""Least share of the points on the foot's inner part: a third of what a whole view from 45 degrees above shows."""
 
 
 def heights(kind: Kind, size: Vec3) -> tuple[float, float]:
@@ -84,16 +80,6 @@ def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> F
             best = solve(lambda p: _apart(kind, size, used, floor, p), best, ROBUST / 2, TRIES)[0]
     left = np.minimum(_apart(kind, size, used, floor, best)[0], 0.02)
     return Fit(float(best[0]), float(best[1]), math.remainder(float(best[2]), math.tau), float(left.mean()))
-
-
-def closed_above(kind: Kind, size: Vec3, points: Array, floor: float, at: Fit) -> bool:
-    """The foot of a vessel that stands at `at` is seen on top: only then is it upside down.
-
-    The walls alone fit a vessel either way up, all the more when something hides a part of it.
-    """
-    inner = np.hypot(points[:, 0] - at.x, points[:, 1] - at.y) < 0.6 * kind.foot(size)
-    on_top = np.abs(points[:, 2] - floor - size[2]) < LEVEL
-    return bool(np.count_nonzero(inner & on_top) > CLOSED * len(points))
 
 
 def fit_upside_down(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:

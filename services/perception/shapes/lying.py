@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from common.messages import ShapeFamily
+from common.messages import End, ShapeFamily
 from services.perception.shapes import primitives
-from services.perception.shapes.measurement import LEVEL, SLICES, End, Measurement
+from services.perception.shapes.measurement import LEVEL, SLICES, Measurement
 from services.perception.shapes.primitives import Silhouette, Solution
 from services.perception.shapes.turned import (
     BODY,

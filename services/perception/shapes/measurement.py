@@ -2,13 +2,10 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 from common.floor_plan import Vec3
-from common.messages import ShapeFamily
+from common.messages import End, ShapeFamily
 
-End = Literal["open", "closed", ""]
-"""What an end of something turned was seen to be, \"\" when too little tells."""
 SLICES = 8
 """Pieces of the height in which the radius of a turned shape is read off."""
 LEVEL = math.pi / 2

@@ -10,6 +10,7 @@ from common.messages import ShapeFamily
 from services.perception.shapes import primitives
 from services.perception.shapes.measurement import SLICES, Measurement
 from services.perception.shapes.primitives import Silhouette, Solution
+from services.perception.shapes.upper_end import through, upper_end
 
 CAVITY = 0.06
 """Share of the points that are seen through the plane of the rim, from which an object is hollow. Chosen: a mug at 2 m
@@ -35,10 +36,6 @@ VESSEL = (0.05, 0.17)
 WIDER, WIDTH_COST = 1.15, 0.3
 """Width of a turned shape by that of its outline up to which it may be one, and the share of what it is wider that
 counts as off. Chosen: the error of an outline at 2 m; as a ball's height counts."""
-INNER_PART = 0.6
-"""Share of the radius within which the upper end of a vessel is its bottom or its opening, and no rim."""
-FLAT, LEVEL_SHARE = 0.006, 0.8
-"""How far [m] from its height points of a level end are, beside the noise, and the least share of them that are."""
 
 
 def spread(solution: Solution, entries: slice) -> float:
@@ -120,12 +117,14 @@ def standing(
     beyond_it = 2 * widest - WIDER * outline.distance * float(np.ptp(outline.ends)) - noise
     too_wide = WIDTH_COST * beyond_it if beyond_it > 0.0 else 0.0
     flared = grows > 0.25 or radii[-1] > 1.25 * radii[1]
+    # Past a neck one looks as well.
+    closed = upper_end(points, (x, y), float(radii[-2]), h, eye, noise) == "closed"
     shape: ShapeFamily = "bowl" if hollow and (flared or h < 1.1 * widest) else "round"
     return Measurement(
         shape, x, y, 0.0 if math.isnan(handle) else handle, (2 * widest, 2 * widest, h),
         float(np.minimum(off, 0.02).mean()) + too_wide, spread(solution, slice(0, 3)),
         profile=tuple(round(float(v) / widest, 2) for v in radii), hollow=hollow, handle=handle, free=5,
-        end="open" if hollow else "closed" if _closed(points, rho, float(radii[-2]), h, eye, noise) else "",
+        end="open" if hollow else "closed" if closed else "",
     )  # fmt: skip
 
 
@@ -153,19 +152,7 @@ def _on_one_side(from_axis: Array, beyond: NDArray[np.bool_]) -> bool:
 def _within(points: Array, x: float, y: float, rim: float, h: float, eye: Array, noise: float) -> NDArray[np.bool_]:
     """Which points (n, 3) are well below the rim and seen through its plane: they are of the inside."""
     low = points[:, 2] < h - max(min(DEEP, SHALLOW * h), 2.5 * noise)
-    if eye[2] < h + 0.02:
-        return np.zeros(len(points), bool)
-    drop = np.where(low, points[:, 2] - eye[2], -1.0)
-    through = eye[:2] + (points[:, :2] - eye[:2]) * ((h - eye[2]) / drop)[:, None]
-    return np.asarray(low & (np.hypot(through[:, 0] - x, through[:, 1] - y) < rim))
-
-
-def _closed(points: Array, rho: Array, r: float, h: float, eye: Array, noise: float) -> bool:
-    """The inner part of the upper end is seen from above, and it is level."""
-    inner = points[rho < INNER_PART * r]
-    if eye[2] < h + 0.02 or not len(inner) or len(inner) < CAVITY * len(points):
-        return False
-    return bool(np.mean(np.abs(inner[:, 2] - h) < FLAT + noise) > LEVEL_SHARE)
+    return low & through(points, (x, y), rim, h, eye)
 
 
 def _profile(points: Array, rho: Array, h: float, outline: Silhouette, x: float, y: float, r: float) -> Array:

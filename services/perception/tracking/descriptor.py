@@ -7,9 +7,10 @@ import numpy as np
 
 from common.floor_plan import Vec3
 from common.geometry import Array
-from common.messages import ShapeFamily
+from common.messages import End, ShapeFamily
 from common.naming.likeness import TAKEN_FOR
 from services.perception.detection import Detection
+from services.perception.shapes.measurement import LEVEL
 from services.perception.unlisted import MOST_POINTS, thinned
 from services.perception.views import colour
 
@@ -36,7 +37,8 @@ class Descriptor:
     seen from no farther than about `nearest` [m].
 
     `opening`: votes for an open end, from whatever side; they do not fade, as it is no more to be seen when the object
-    stands on it. `firm`: the last kind that counted as seen.
+    stands on it. `ends`: votes for what its upper end is, since it rests as it does. `firm`: the last kind that counted
+    as seen.
     """
 
     size: Vec3
@@ -48,6 +50,7 @@ class Descriptor:
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     named: tuple[str, str] = ("", "")
     opening: float = 0.0
+    ends: dict[End, float] = field(default_factory=dict)
     firm: str = ""
     nearest: float = math.inf
 
@@ -56,7 +59,12 @@ class Descriptor:
         `middle` [map]: where the object is in that view, so that views laid one over another do not blur it.
         """
         old = self.shape
-        self.opening += weight * (d.end == "open")
+        # Past the ridge of a carton one looks as well.
+        self.opening += weight * (d.end == "open" and d.shape != "box")
+        if moved:
+            self.ends = {}
+        if d.end and d.tilt != LEVEL:
+            vote(self.ends, {d.end: 1.0}, weight)
         vote(self.kinds, d.kinds, weight)
         vote(self.colours, d.colours, weight)
         vote(self.shapes, {d.shape: 1.0}, weight)
@@ -72,7 +80,7 @@ class Descriptor:
 
     def set_down(self) -> None:
         """The hand has let go: how it rests, and what shape it shows so, is to be seen anew."""
-        self.shapes, self.spread = {}, 0.0
+        self.shapes, self.ends, self.spread = {}, {}, 0.0
 
     def _add_points(self, d: Detection, points: Array, moved: bool) -> None:
         """Views of like noise are merged; what was seen from much farther blurs what was seen from near."""
@@ -90,6 +98,11 @@ class Descriptor:
     @property
     def shape(self) -> ShapeFamily:
         return max(self.shapes, key=lambda s: (self.shapes[s], s), default="")
+
+    @property
+    def top(self) -> End:
+        """What its upper end is by most votes."""
+        return max(self.ends, key=lambda end: (self.ends[end], end), default="")
 
     @property
     def likely_kinds(self) -> list[str]:
@@ -127,7 +140,9 @@ def shares(votes: dict[str, float]) -> dict[str, float]:
     return {name: round(votes[name] / total, 3) for name in ordered if votes[name] >= LEAST_SHARE * total}
 
 
-def vote(votes: dict[str, float] | dict[ShapeFamily, float], new: dict[str, float], weight: float) -> None:
+def vote(
+    votes: dict[str, float] | dict[ShapeFamily, float] | dict[End, float], new: dict[str, float], weight: float
+) -> None:
     """Add shares to the votes, of which the old ones fade."""
     table: dict[str, float] = votes  # type: ignore[assignment]
     for name in table:

@@ -235,4 +235,5 @@ def _as_object(t: Track, label: str) -> WorldObject:
         colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
         kind_shares={} if t.known else shares(t.looks.kinds), colour_shares={} if t.known else shares(t.looks.colours),
         measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(),
+        top=t.looks.top,
     )  # fmt: skip
