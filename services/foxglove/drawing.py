@@ -17,7 +17,7 @@ from common.messages.base import IDENTITY, Quat, Vec3
 from common.naming.colours import COLOURS, UNKNOWN_COLOUR
 from common.rendering.encode import jpeg
 from common.robot.frames import LIDAR, MAP, FramePose, optical_frame
-from common.robot.pictures import colours
+from common.robot.pictures import colours, millimetres, pinhole
 from common.robot.shapes import Shape
 
 QUALITY = 80
@@ -208,8 +208,6 @@ def depth(message: m.Rgbd) -> Any:
     Raises:
         ValueError: not as many pixels as it says.
     """
-    if len(message.depth) != 2 * message.width * message.height:
-        raise ValueError(f"{len(message.depth)} bytes of {message.width} x {message.height} pixels")
     return fm.RawImage(
         timestamp=timestamp(message.t),
         frame_id=optical_frame(message.camera),
@@ -217,13 +215,13 @@ def depth(message: m.Rgbd) -> Any:
         height=message.height,
         encoding="16UC1",
         step=2 * message.width,
-        data=message.depth,
+        data=millimetres(message).tobytes(),
     )
 
 
 def calibration(message: m.Rgbd) -> Any:
     """The camera of a picture as a pinhole without distortion."""
-    fx, fy, cx, cy = message.fx, message.fy, message.cx, message.cy
+    matrix, projection = pinhole(message)
     return fm.CameraCalibration(
         timestamp=timestamp(message.t),
         frame_id=optical_frame(message.camera),
@@ -231,7 +229,7 @@ def calibration(message: m.Rgbd) -> Any:
         height=message.height,
         distortion_model="",
         D=[],
-        K=[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0],
+        K=matrix,
         R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-        P=[fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+        P=projection,
     )

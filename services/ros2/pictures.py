@@ -3,15 +3,15 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common import messages as m
 from common.robot.frames import optical_frame
+from common.robot.pictures import colours, millimetres, pinhole
 from services.ros2.types import Types
 
 
-def _picture(types: Types, message: m.Rgbd, encoding: str, data: bytes, pixel: int) -> Any:
-    if len(data) != message.width * message.height * pixel:
-        raise ValueError(f"{len(data)} bytes of {message.width} x {message.height} pixels")
+def _picture(types: Types, message: m.Rgbd, encoding: str, pixels: NDArray[Any]) -> Any:
     return types.new(
         "sensor_msgs/Image",
         header=types.header(message.t, optical_frame(message.camera)),
@@ -19,23 +19,24 @@ def _picture(types: Types, message: m.Rgbd, encoding: str, data: bytes, pixel: i
         width=message.width,
         encoding=encoding,
         is_bigendian=0,
-        step=message.width * pixel,
-        data=np.frombuffer(data, np.uint8),
+        step=pixels.strides[0],
+        data=pixels.view(np.uint8).ravel(),
     )
 
 
 def image(types: Types, message: m.Rgbd) -> Any:
-    return _picture(types, message, "rgb8", message.rgb, 3)
+    """The colours of a picture; raises `PictureError`."""
+    return _picture(types, message, "rgb8", colours(message))
 
 
 def depth(types: Types, message: m.Rgbd) -> Any:
-    """Millimetres, 0 where nothing is seen (REP 118)."""
-    return _picture(types, message, "16UC1", message.depth, 2)
+    """Depth of a picture in millimetres, 0 where nothing is seen (REP 118); raises `PictureError`."""
+    return _picture(types, message, "16UC1", millimetres(message))
 
 
 def camera_info(types: Types, message: m.Rgbd) -> Any:
     """The camera of a picture as a pinhole without distortion."""
-    fx, fy, cx, cy = message.fx, message.fy, message.cx, message.cy
+    matrix, projection = pinhole(message)
     whole_picture = types.new(
         "sensor_msgs/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
     )
@@ -46,9 +47,9 @@ def camera_info(types: Types, message: m.Rgbd) -> Any:
         width=message.width,
         distortion_model="plumb_bob",
         d=np.zeros(5),
-        k=np.array([fx, 0, cx, 0, fy, cy, 0, 0, 1.0]),
+        k=np.array(matrix),
         r=np.eye(3).ravel(),
-        p=np.array([fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1.0, 0]),
+        p=np.array(projection),
         binning_x=0,
         binning_y=0,
         roi=whole_picture,
