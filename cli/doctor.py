@@ -1,4 +1,4 @@
-"""`tidybot doctor`: what this machine has, what is missing, and the command that fixes it."""
+"""`tidybot doctor`: checks what the robot needs on this machine, and names the command that fixes what is missing."""
 
 import argparse
 import ctypes.util
@@ -37,7 +37,7 @@ ROBOT = "stanford_tidybot"
 
 
 class Finding(msgspec.Struct):
-    """One thing looked at. `level`: ok, note (an option is not there), error (the robot cannot run)."""
+    """The result of one check. `level`: ok, note (an option is not there), error (the robot cannot run)."""
 
     level: str
     what: str
@@ -199,7 +199,7 @@ def robots() -> Iterator[Finding]:
 
 
 def language_model() -> Iterator[Finding]:
-    """Who plans with `planner.backend = "auto"`: the planner's own look at its configuration and endpoint."""
+    """Check of the language model: the planner's own check of its configuration and endpoint."""
     try:
         yield msgspec.json.decode(said_by("services.planner.language_model.diagnosis"), type=Finding)
     except CliError as error:

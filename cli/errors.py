@@ -25,7 +25,7 @@ def near(word: str, known: Iterable[str]) -> str:
 
 
 def checked(word: str, known: Iterable[str], what: str) -> str:
-    """The word itself when known.
+    """The word itself if it is one of the known ones.
 
     Raises:
         CliError: unknown; names the nearest.

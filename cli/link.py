@@ -1,4 +1,4 @@
-"""The command line's way onto the bus: a session, the latched values, and messages as they come."""
+"""The command line's access to the bus: a session, latched values, queries and subscriptions."""
 
 import argparse
 import os
@@ -28,7 +28,7 @@ FIRST = 3.0
 
 
 class Link:
-    """An open session with what the commands ask of it."""
+    """An open session with the operations that commands need."""
 
     def __init__(self, session: Any, connect: str, namespace: str = "") -> None:
         self.session, self.connect, self.namespace = session, connect, namespace
@@ -111,7 +111,7 @@ class Link:
 
 
 class Watch(Generic[M]):
-    """Messages of one topic as they come; of a latched one the present value first, and again after an outage."""
+    """Subscription to one topic; a latched one yields its present value first, and again after an outage."""
 
     REFRESH = 2.0
     """Silence [s] after which the present value is asked for: an outage of the router may have cost one."""
@@ -143,7 +143,7 @@ class Watch(Generic[M]):
                     return None
 
     def drain(self) -> Iterator[M]:
-        """The messages that are there already."""
+        """The messages that have arrived already."""
         while (message := self.next(0.0)) is not None:
             yield message
 
@@ -170,7 +170,7 @@ class Watch(Generic[M]):
 
 
 def unanswered(topic: Topic[Any]) -> CliError:
-    """The error of a writer that does not answer."""
+    """The error for a latched topic whose writer does not answer."""
     return CliError(f"{topic.writers[0]} does not answer; see `tidybot ps`")
 
 
@@ -236,5 +236,5 @@ def fresh_id() -> str:
 
 
 def known_keys() -> list[str]:
-    """Every key of the table, with the keys that each process has."""
+    """All keys of the topic table, including those of each process."""
     return [t.key for t in topics.TABLE]

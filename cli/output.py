@@ -1,4 +1,4 @@
-"""What commands print: for programs with `--json`, else for people."""
+"""Output of commands: JSON for programs, lines for people."""
 
 import argparse
 from collections.abc import Callable, Iterable
@@ -25,7 +25,7 @@ def state_line(state: m.BrainState) -> str:
 
 
 class NewStates:
-    """Tells of the brain's states, of each once."""
+    """Formats the brain's states, leaving out repetitions."""
 
     def __init__(self) -> None:
         self._shown: tuple[str, ...] = ()

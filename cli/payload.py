@@ -1,4 +1,4 @@
-"""Payloads of any key as something to print."""
+"""Conversion of any payload into something to print."""
 
 from typing import Any
 

@@ -36,7 +36,7 @@ KEYS = "space stop, r resume, y/n, q"
 
 
 class Picture:
-    """What is known now; `update` takes what has arrived."""
+    """What the screen shows; `update` takes the messages that have arrived."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
@@ -184,7 +184,7 @@ def keyboard() -> Iterator[bool]:
 
 
 def press(link: Link, key: str) -> bool:
-    """Do what a key means; False to leave."""
+    """Carry out a key press; False for the key that leaves."""
     if key == " ":
         link.send(topics.ROBOT_STOP, m.RobotStop(reason="space bar", source="tidybot watch"))
     elif key == "r":

@@ -1,4 +1,4 @@
-"""What an agent may know of the robot: pictures, objects, the map, its state. Each function asks the bus once."""
+"""Queries of an agent about the robot: pictures, objects, the map, its state. Each function asks the bus once."""
 
 import os
 from typing import Any
@@ -39,7 +39,7 @@ def picture(link: Link, camera: m.CameraName) -> bytes:
 
 
 def objects(link: Link) -> list[dict[str, Any]]:
-    """What the robot remembers to have seen, the newest first: where, how sure, how many seconds ago.
+    """The objects that the robot remembers, the last seen first: where, how sure, how many seconds ago.
 
     Raises:
         CliError: perception does not answer.
@@ -57,7 +57,7 @@ def objects(link: Link) -> list[dict[str, Any]]:
 
 
 def whereabouts(link: Link, words: str) -> list[dict[str, Any]]:
-    """The remembered objects that all the words fit: of label, kind, colour, taught names, or what is printed on it."""
+    """The remembered objects that all words of a phrase fit: by label, kind, colour, taught name or print."""
     wanted = set(words.lower().split())
     found = []
     for one in objects(link):
@@ -105,7 +105,7 @@ def map_picture(link: Link) -> bytes:
 
 
 def status(link: Link) -> dict[str, Any]:
-    """What the robot is doing, how the last mission ended, whether its brake is on.
+    """The robot's state: what it does, how the last mission ended, whether its brake is on.
 
     Raises:
         CliError: the brain does not answer.

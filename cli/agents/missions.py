@@ -1,4 +1,4 @@
-"""An agent's commands: given as a person's are, and followed to their end without holding up the server."""
+"""An agent's commands: given like a person's, and followed to their end without blocking the server."""
 
 import argparse
 import uuid
@@ -25,7 +25,7 @@ LONGEST = 200
 
 
 class Mission(TypedDict):
-    """How a command stands: `delivered`; `asking`: the robot waits for an answer to `text`; `under_way` after the wait.
+    """State of a command: `delivered`; `asking`: the robot waits for an answer to `text`; `under_way` after the wait.
 
     `text`: what was done, the answer, or the question.
     """
@@ -37,7 +37,7 @@ class Mission(TypedDict):
 
 
 class Missions:
-    """Commands of one agent to the robot that `args` name.
+    """Gives one agent's commands to the robot that `args` name, one at a time.
 
     Args:
         name: whose certificate is shown where there are keys.
@@ -49,7 +49,7 @@ class Missions:
 
     @asynccontextmanager
     async def link(self) -> AsyncIterator[Link]:
-        """A link of this call alone: the robot may come, go and change its address while the server runs.
+        """Open a link for one call: the robot may come, go and change its address while the server runs.
 
         Raises:
             BusError: no router, or no certificate.
@@ -62,7 +62,7 @@ class Missions:
             opened.__exit__(None, None, None)
 
     async def ask(self, work: Callable[[Link], T]) -> T:
-        """What `work` finds on the bus, in a thread."""
+        """Run `work` on the bus, in a thread, and return its result."""
         async with self.link() as link:
             return await run_sync(partial(work, link))
 
@@ -158,7 +158,7 @@ class Missions:
 
 
 def sentence(text: str, what: str) -> str:
-    """A text as one line of printable words.
+    """A text reduced to one line of printable words.
 
     Raises:
         CliError: empty, too long or not text.

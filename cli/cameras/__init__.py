@@ -1,1 +1,1 @@
-"""Where the cameras really sit: `tidybot calibrate`."""
+"""Calibration of the cameras' mounts: `tidybot calibrate`."""

@@ -1,4 +1,4 @@
-"""`tidybot calibrate`: where the cameras really sit, found by looking at the arm and at what both cameras see."""
+"""`tidybot calibrate`: measures the cameras' mounts from pictures of the arm and of what both cameras see."""
 
 import argparse
 from pathlib import Path
@@ -11,7 +11,7 @@ NEEDED = ("sim", "camera")
 
 
 def calibrate(args: argparse.Namespace) -> int:
-    """Checked before anything moves; what measures needs numerical libraries that the other commands do without."""
+    """Check the options, then measure; imports the numerical libraries that other commands do without."""
     if args.out.exists() and not args.force:
         raise CliError(f"{args.out} is there already; --force writes over it")
     with linked(args) as link:

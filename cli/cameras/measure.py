@@ -1,4 +1,4 @@
-"""Measuring the cameras' mounts on a robot that is up: the arm's way from pose to pose, and the pictures there."""
+"""Measurement of the cameras' mounts on a running robot: moves the arm from pose to pose and takes pictures."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -36,7 +36,7 @@ class Photographer:
         self._driver, self._arm = driver, arm
 
     def shot(self, camera: m.CameraName) -> Shot:
-        """A picture from where the arm is at rest.
+        """Take a picture with the arm at rest.
 
         Raises:
             CliError: none comes.
@@ -49,7 +49,7 @@ class Photographer:
         return np.array([joints[name] for name in ARM])
 
     def visit(self, goals: Sequence[Array]) -> Iterator[Array]:
-        """The arm at rest at each of `goals` (7,) [rad] in turn, from the carry pose and back to it."""
+        """Move the arm to each of `goals` (7,) [rad] in turn, from the carry pose and back to it; yields at each."""
         for goal in goals:
             self.move(goal)
             yield goal
@@ -80,7 +80,7 @@ class Photographer:
 
 
 def run(link: Link, out: Path, count: int) -> int:
-    """Move, look, fit, write; the exit status.
+    """Measure the mounts and write the file; returns the exit status.
 
     Raises:
         CliError: the robot does not do its part, or too little is to be seen.

@@ -1,4 +1,4 @@
-"""Where cameras really sit: the head's from pictures of the robot's arm, the wrist's from what both see. Pure.
+"""Fit of the cameras' mounts: the head's from pictures of the arm, the wrist's from what both cameras see. Pure.
 
 Projective point-to-plane registration of what the camera measures against the robot's description. Source: Chen and
 Medioni, "Object modelling by registration of multiple range images", 1992; the association by rays is that of Newcombe
@@ -26,7 +26,7 @@ LEAST = 400
 
 
 class Unseen(Exception):
-    """The pictures do not show enough of what is registered."""
+    """The pictures do not show enough of the surface that they are registered with."""
 
 
 def fit(surface: Surface, shots: Sequence[Shot]) -> Mount:

@@ -1,4 +1,4 @@
-"""Poses of the arm in which pictures say something about the cameras' mounts, and the way to which is free. Pure."""
+"""Arm poses for calibration: informative for the cameras' mounts, with a free way there. Pure."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""A picture with the pose of the arm in it, and where the camera that took it sits."""
+"""A picture with the arm's pose at its time, and the mount of the camera that took it."""
 
 from dataclasses import dataclass
 

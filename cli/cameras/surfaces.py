@@ -1,4 +1,4 @@
-"""What pictures are registered against: the arm as it is described, the room as another camera saw it. Pure."""
+"""Surfaces that pictures are registered with: the arm by its description, the room by another camera. Pure."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -30,10 +30,10 @@ Match = tuple[Array, Array, NDArray[np.bool_]]
 
 
 class Surface(Protocol):
-    """What pictures are registered against."""
+    """A surface that pictures are registered with."""
 
     def take(self, shot: Shot) -> None:
-        """The robot as it stood when the picture was taken."""
+        """Set the robot's pose to that at the time of the picture."""
 
     def match(self, origin: Array, directions: Array, points: Array, shape: tuple[int, int]) -> Match:
         """The surface that belongs to each measured point (n, 3), seen from `origin` along unit `directions` (n, 3);
@@ -78,7 +78,7 @@ class Arm(RobotKinematics):
 
 
 class Room:
-    """What another camera that does not move saw of the world around, its own `mount` taken into account.
+    """The room as measured by another camera that does not move, its own `mount` taken into account.
 
     Of `images` the farthest depth counts: the arm was in front of something else in each.
     """

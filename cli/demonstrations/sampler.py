@@ -1,4 +1,4 @@
-"""From messages to frames: what the robot sensed and did, at a fixed rate of robot time, episode by episode. Pure."""
+"""Sampling of messages into frames of state, action and pictures at a fixed rate, episode by episode. Pure."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -81,7 +81,7 @@ class Sampler:
         return self._episode is not None
 
     def take(self, message: Any) -> None:
-        """One message; of a kind that says nothing to a demonstration: nothing."""
+        """Take a message; kinds that a demonstration does not contain are ignored."""
         match message:
             case m.JointStates():
                 self._sample(message)

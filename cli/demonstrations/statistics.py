@@ -1,4 +1,4 @@
-"""Statistics of a feature as LeRobot normalises by them: least, greatest, mean, standard deviation, count. Pure."""
+"""Statistics of a feature, by which LeRobot normalises: minimum, maximum, mean, standard deviation, count. Pure."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,1 +1,1 @@
-"""What the robot relies on from its drivers: `tidybot conform`."""
+"""Conformance test of drivers: `tidybot conform`."""

@@ -1,4 +1,4 @@
-"""A driver as `tidybot conform` sees it: what it says on the bus, and the passing of its time."""
+"""A driver under test: its messages on the bus, and the passing of its time."""
 
 import math
 from collections.abc import Callable
@@ -25,7 +25,7 @@ class Unmet(Exception):
 
 @dataclass
 class Driver:
-    """What a driver says, in the order in which it says it."""
+    """Collects a driver's messages in their order."""
 
     link: Link
     heard: dict[str, list[Any]] = field(default_factory=dict)

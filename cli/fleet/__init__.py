@@ -1,1 +1,1 @@
-"""Several robots: where each is, what it does, and which of them a command goes to."""
+"""Several robots: overview of their states, and dispatch of commands to the best one."""

@@ -1,4 +1,4 @@
-"""Which robot a command goes to: the one that is expected to be done first, and why. Pure."""
+"""Choice of the robot for a command: the one expected to be done first, with reasons. Pure."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -22,7 +22,7 @@ may be a flat's length further away."""
 
 
 class Candidate(msgspec.Struct, frozen=True):
-    """A robot and what it would take [s]; `why` in words. One that cannot take the command costs infinitely much."""
+    """A robot with its expected time [s] for a command, infinite if it cannot take it, and `why` in words."""
 
     name: str
     cost: float
@@ -34,7 +34,7 @@ class Candidate(msgspec.Struct, frozen=True):
 
 
 def things(text: str, labels: Iterable[str]) -> list[str]:
-    """The known objects that a command may be about: those named in full, or else those of a kind that is named."""
+    """The known objects that a command may be about: those named in full, else those of a kind that is named."""
     words = f" {normalise(text)} "
     named = sorted({label for label in labels if f" {label.lower()} " in words}, key=len, reverse=True)
     if named:
@@ -44,7 +44,7 @@ def things(text: str, labels: Iterable[str]) -> list[str]:
 
 
 def goals(text: str, robots: Iterable[RobotNow]) -> dict[str, dict[str, tuple[float, float]]]:
-    """Where the things of a command are, by robot: as it knows it."""
+    """Positions of the objects of a command, as each robot knows them, by robot."""
     robots = list(robots)
     wanted = set(things(text, {label for r in robots for label in r.knows}))
     return {r.name: {label: at for label, at in r.knows.items() if label in wanted} for r in robots}

@@ -29,7 +29,7 @@ NAMELESS = "(no namespace)"
 
 
 def shown(name: str) -> str:
-    """What people read for a robot's name."""
+    """A robot's name as people read it."""
     return name or NAMELESS
 
 

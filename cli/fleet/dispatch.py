@@ -1,4 +1,4 @@
-"""One command to one robot of several, exactly once: offered, taken or withdrawn, followed, and taken over if lost."""
+"""Dispatch of a command to exactly one robot: offers, withdraws, follows it, and hands it over if a robot is lost."""
 
 import math
 import uuid
@@ -82,7 +82,7 @@ class Dispatch:
 
     # --- giving it to somebody
     def offer(self) -> bool:
-        """Offer it to one robot after the other, the best first, until one has taken it."""
+        """Offer the command to one robot after the other, the best first, until one has taken it."""
         present = self._desk.names()
         robots = self._desk.look((self._among & present if self._among else present) - set(self.lost))
         self.candidates = rank(robots, goals(self.text, robots), metres(self._desk, robots, self.text))
@@ -120,12 +120,12 @@ class Dispatch:
         return False
 
     def withdraw(self, name: str) -> None:
-        """That robot is not to carry it out, whether it has begun or hears of it later."""
+        """Withdraw the command from a robot, whether it has begun or hears of it later."""
         self._desk.send(name, topics.VOICE_COMMAND, m.VoiceCommand(text="", withdraws=self.id))
 
     # --- following it
     def follow(self, hand_over: bool) -> bool:
-        """One look; True once the command has ended.
+        """Check on the command; True once it has ended.
 
         A robot that has fallen silent is reported. With `hand_over` another one gets the command; the lost one is told
         when it is back, before it goes on by itself.

@@ -1,4 +1,4 @@
-"""What of a robot's traffic crosses a radio link: its own router's configuration, made from the topic table."""
+"""Thinning of a robot's traffic over a radio link: its router's configuration, generated from the topic table."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Every robot that can be reached, whatever its namespace: who is there, and how each stands."""
+"""Discovery of all reachable robots, whatever their namespaces, and their states."""
 
 from typing import Any, TypeVar
 
@@ -27,7 +27,7 @@ TOLD: dict[str, Topic[Any]] = {
 
 
 class RobotNow(msgspec.Struct, frozen=True, kw_only=True):
-    """How one robot stands; what it does not tell is None or empty.
+    """The state of one robot; what it does not publish is None or empty.
 
     `name` is its namespace. `battery` from 0 to 1. `braked`: somebody has stopped it. `question`: what it asks a person
     and waits for. `knows`: labels of the objects it knows of with where they are (x, y) [m, map]. `holding`: the label
@@ -67,7 +67,7 @@ class Desk:
         return {key.removesuffix(BRAIN_ALIVE).rstrip("/") for key in keys}
 
     def look(self, among: set[str] | None = None, *, objects: bool = True) -> list[RobotNow]:
-        """How every robot stands, of `among` alone when given; one that does not answer in time has no state."""
+        """The state of every robot, or of those in `among`; one that does not answer in time has none."""
         names = sorted(self.names() if among is None else among)
         asked = {k: t for k, t in TOLD.items() if objects or k != "world"}
         # All at once: the slowest answer is waited for, not their sum.
@@ -75,7 +75,7 @@ class Desk:
         return [robot(name, **{k: _first(asked[k], heard) for k, heard in replies[name].items()}) for name in names]
 
     def state(self, name: str) -> m.BrainState | None:
-        """What the robot's brain says now, None when it does not answer."""
+        """The robot's `brain/state`, None when it does not answer."""
         return _first(topics.BRAIN_STATE, self._get(name, topics.BRAIN_STATE))
 
     def send(self, name: str, topic: Topic[M], message: M) -> None:
@@ -99,7 +99,7 @@ class Desk:
 
 
 def below(name: str, key: str) -> str:
-    """The key as it is for those outside of the robot's namespace."""
+    """A key of the robot as seen from outside of its namespace."""
     return f"{name}/{key}" if name else key
 
 
@@ -121,7 +121,7 @@ def robot(
     battery: m.BatteryState | None = None,
     world: m.WorldObjects | None = None,
 ) -> RobotNow:
-    """One robot from what it told."""
+    """The state of one robot from its answers."""
     objects = world.objects if world is not None else []
     now = RobotNow(
         name=name,

@@ -1,4 +1,4 @@
-"""What the fleet's page shows and does: looks at the robots once a second, follows the commands given there."""
+"""Model of the fleet's page: polls the robots once a second and follows the commands given there."""
 
 import base64
 import threading
@@ -23,7 +23,7 @@ SOURCE = "fleet page"
 
 
 class WatchRoom:
-    """Threads of its own look and follow; what visitors ask for may be called from any."""
+    """Polls and follows in threads of its own; its methods may be called from any thread."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._over = desk, threading.Event()

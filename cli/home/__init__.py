@@ -1,1 +1,1 @@
-"""What the robot is told of its home: `tidybot map`, `places`, `rules`, `teach`, `forget`."""
+"""Commands about the robot's home: `tidybot map`, `places`, `rules`, `teach`, `forget`."""

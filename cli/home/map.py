@@ -94,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def contents(household: Household) -> list[str]:
-    """What there is in each room, by the names that the robot has for it: `room 1: table, bin 2`."""
+    """The surfaces of each room by the robot's names for them, as `room 1: table, bin 2`."""
     named = edited(household, m.HouseholdEdits())
     rooms = {
         room.name: [r.name for r in named.receptacles if named.room_at(*r.center[:2]) == room] for room in named.rooms
@@ -119,7 +119,7 @@ def _resumed(directory: Path | None) -> list[str]:
 
 
 def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m.MappingStatus:
-    """Show the growing map until it is done; on Ctrl-C have it saved. What the mapping service said last.
+    """Show the growing map until it is done, or save it on Ctrl-C; returns the last mapping status.
 
     Raises:
         CliError: a process ended, or nothing was saved.

@@ -56,7 +56,7 @@ def _part(link: Link, wanted: str) -> str:
 
 
 def told(edit: m.HouseholdEdit, result: m.EditResult) -> str:
-    """What came of an edit, for people."""
+    """The outcome of an edit in words."""
     if not result.ok:
         return f"not done: {result.detail}"
     match edit.do:

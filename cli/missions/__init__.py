@@ -1,1 +1,1 @@
-"""What people ask of the robot and what became of it: `tidybot say`, `status`, `missions`, `explain`, `demo`."""
+"""Commands about missions: `tidybot say`, `status`, `missions`, `explain`, `demo`."""

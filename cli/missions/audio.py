@@ -48,7 +48,7 @@ class Player:
         self._link, self._chunks = link, chunks
 
     def play(self) -> None:
-        """Returns when all is said.
+        """Play all chunks; returns when they are sent.
 
         Raises:
             CliError: robot time stands still.

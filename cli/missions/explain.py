@@ -42,7 +42,7 @@ def told(record: dict[str, Any]) -> str:
 
 
 def pictures(link: Link, record: dict[str, Any]) -> list[tuple[float, str, str]]:
-    """What the mission rests on, as the page takes it: seconds since the mission began, caption, JPEG in base64."""
+    """Pictures that the mission rests on: seconds since it began, caption, JPEG in base64."""
     found = []
     for entry in record["entries"]:
         name = entry.get("picture")

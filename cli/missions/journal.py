@@ -1,4 +1,4 @@
-"""`tidybot missions`: what was asked of the robot and what became of it, from the brain's journal."""
+"""`tidybot missions`: lists past missions and their outcomes from the brain's journal."""
 
 import argparse
 from datetime import datetime

@@ -1,4 +1,4 @@
-"""Was it really delivered? The judge of the evaluation, over a link to a robot that runs."""
+"""The verdict on a mission of a running robot, by the judge of the evaluation over a link."""
 
 import msgspec
 
@@ -23,7 +23,7 @@ class Verdict(msgspec.Struct):
 
 
 class Witness:
-    """Watches one object from before the command to after the mission; it belongs on the scene's delivery place.
+    """Observes one object, to be delivered to the scene's delivery place, from before the command on.
 
     Made once the simulation answers. `look` takes in what has come since; `judge` watches on for `WATCH` seconds of
     robot time before it concludes.

@@ -18,7 +18,7 @@ def own_robot(
     scene: str = "",
     **files: str,
 ) -> argparse.Namespace:
-    """What a `Plan` is made of: a free port, a namespace that begins with `name`, no keys and no window.
+    """Options of a `Plan`: a free port, a namespace that begins with `name`, no keys and no window.
 
     `settings`: as `section.key=value`; `files`: paths of a `world` and a `household` in place of the `scene`.
     """

@@ -1,4 +1,4 @@
-"""What `up`, `demo` and the benchmarks start: options, checked before anything runs."""
+"""The options with which `up`, `demo` and the benchmarks start a robot, checked before anything runs."""
 
 import argparse
 import contextlib
@@ -31,7 +31,7 @@ SENSORS = ("bought", "ideal")
 
 
 class Plan:
-    """What is to be started, checked before anything starts.
+    """The processes to start with their settings, checked before anything starts.
 
     Raises:
         CliError: an unknown service or section, a bad speed, a busy port.

@@ -1,4 +1,4 @@
-"""Ends what hangs, so that the supervisor starts it anew: `python -m cli.processes.watchdog`, a program of each run.
+"""Kills processes that hang, so that the supervisor restarts them; a program of each run.
 
 A service shows twice that it lives: by its liveliness token, which a frozen process loses after the router's lease,
 and by `service/<name>/health` once a second, which a loop that never returns leaves out.
@@ -31,7 +31,7 @@ LOOK = 0.25
 
 
 class Pulse:
-    """When each process was last heard, and whether its silence means that it hangs. Pure."""
+    """Keeps when each process was last heard and decides whether it hangs. Pure."""
 
     def __init__(self) -> None:
         self._heard: dict[str, tuple[int, float]] = {}
@@ -73,7 +73,7 @@ def look(pid: int) -> tuple[bool, float]:
 
 
 def watch(supervision: Supervision, stop: StopSignal) -> None:
-    """End what hangs until told to stop."""
+    """Kill processes that hang, until told to stop."""
     info, pulse = supervision.info(), Pulse()
     tokens = {s.name for s in SERVICES if s.token}
     use_keys(info.keys or OFF)

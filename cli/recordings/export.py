@@ -1,4 +1,4 @@
-"""What `tidybot replay --export` makes of a recording: a mission cut out, or its timeline with pictures."""
+"""`tidybot replay --export`: a mission cut out of a recording, or its timeline with pictures."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path

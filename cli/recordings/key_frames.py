@@ -27,7 +27,7 @@ QUALITY = 80
 
 
 class RecordedWorld:
-    """The recorded simulation, drawn at any time.
+    """The recorded simulation, which can be rendered at any time.
 
     Raises:
         CliError: the recording has no physics.

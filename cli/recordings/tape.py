@@ -1,4 +1,4 @@
-"""What a recording is made of: arrivals from the bus in one queue, and the tape that they go to."""
+"""Recording of the bus: a queue of everything that arrives, and the writer that empties it."""
 
 import contextlib
 import queue
@@ -55,7 +55,7 @@ class Listener:
 
 
 class Tape:
-    """Gives every arrival its robot time and writes it."""
+    """Writes what arrives, with its robot time."""
 
     def __init__(self, recorder: Recorder, listener: Listener, wall_clock: bool) -> None:
         self._recorder, self._listener, self._wall_clock = recorder, listener, wall_clock
