@@ -99,7 +99,7 @@ class Recorder:
         for name in self._settling:
             self._tracks[name].restart()
 
-    def feel(self, report: m.SimContacts) -> None:
+    def note_contacts(self, report: m.SimContacts) -> None:
         """Take a part of the simulation's log of contacts."""
         self._book.note(report)
 

@@ -65,7 +65,7 @@ class Observer:
 
     def contacts(self, report: m.SimContacts) -> None:
         """Take a part of the simulation's log of contacts."""
-        self._recorder.feel(report)
+        self._recorder.note_contacts(report)
 
     # --- what is wanted
     def begin(self) -> None:

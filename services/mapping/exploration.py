@@ -31,7 +31,7 @@ class Drive:
 
 
 class Exploration:
-    """State machine of an exploration: `step` returns the next action, `heard` and `surveyed` take its outcome."""
+    """State machine of an exploration: `step` gives the next action, `take_feedback` and `take_survey` its outcome."""
 
     def __init__(self, config: MappingConfig, new_id: Callable[[str], str]) -> None:
         self._config, self._new_id = config, new_id
@@ -68,14 +68,14 @@ class Exploration:
         if self.phase == "exploring":
             self.phase = "returning"
 
-    def heard(self, feedback: m.NavigationFeedback, now: float) -> None:
+    def take_feedback(self, feedback: m.NavigationFeedback, now: float) -> None:
         """Take navigation's feedback."""
         drive = self._drive
         if drive is not None and feedback.goal_id == drive.goal.id and feedback.status in ("arrived", "failed"):
             drive.ended = feedback.status
             self.detail = f"{feedback.code} {feedback.detail}".strip() if feedback.status == "failed" else ""
 
-    def surveyed(self, survey: Survey) -> None:
+    def take_survey(self, survey: Survey) -> None:
         """Take the result of a survey."""
         self._survey, self._surveyed = survey, True
 

@@ -147,7 +147,7 @@ class MappingService:
             return
         pose = compose(self._odom, here)
         for feedback in self._io.take_all(topics.NAVIGATION_FEEDBACK):
-            self._exploration.heard(feedback, now)
+            self._exploration.take_feedback(feedback, now)
             if feedback.met and feedback.met != self._met:
                 self._met = feedback.met
                 met = Met(pose[:2], (feedback.met[0], feedback.met[1]))
@@ -170,7 +170,7 @@ class MappingService:
     def _surveyed(self, found: tuple[Survey, NDArray[np.uint8]]) -> None:
         survey, states = found
         self._drawn(states)
-        self._exploration.surveyed(survey)
+        self._exploration.take_survey(survey)
 
     def _save(self) -> Saved | str:
         """The files that were written, or why they could not be."""

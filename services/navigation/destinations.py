@@ -52,7 +52,7 @@ class Destinations:
 
     def before(self, item: str) -> Choices:
         """Poses before every reported object that `item` can mean, used ones penalised; empty when there is none."""
-        return self._approaches.penalised(self._goal_id, self.goals.seen(item, self.objects()))
+        return self._approaches.penalised(self._goal_id, self.goals.before(item, self.objects()))
 
     def known(self, item: str) -> bool:
         """True when a reported object can be meant by the words `item`."""

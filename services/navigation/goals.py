@@ -35,7 +35,7 @@ class Goals:
     def __init__(self, household: Household, places: Places, config: NavigationConfig) -> None:
         self._household, self._places, self._config = household, places, config
 
-    def told(self, text: str) -> Choices:
+    def by_words(self, text: str) -> Choices:
         """The poses for a goal in words other than `find`; raises `Ended` UNKNOWN_GOAL or UNKNOWN_PLACE."""
         verb, _, place = text.partition(" ")
         if text == "return_to_start":
@@ -86,7 +86,7 @@ class Goals:
                 return self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
         return self._before((x, y), support_at(self._household, x, y))
 
-    def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
+    def before(self, item: str, objects: list[m.WorldObject]) -> Choices:
         """Poses before every reported object that the words `item` can mean; empty when there is none."""
         return [
             choice
@@ -98,7 +98,7 @@ class Goals:
         """True when one of the reported objects can be meant by the words `item`."""
         return bool(self._places.matching(item, objects))
 
-    def spot(self, item: str) -> Choices:
+    def expected_at(self, item: str) -> Choices:
         """The pose at which an item is expected while perception does not run."""
         return [(0.0, self._places.spot(item) or self._config.find_spot)]
 

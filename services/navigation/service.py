@@ -119,12 +119,12 @@ class NavigationService:
         elif item:
             self._find(item)
         else:
-            self._go(self._destinations.goals.told(text))
+            self._go(self._destinations.goals.by_words(text))
 
     def _find(self, item: str) -> None:
         choices = self._destinations.before(item)
         if not self._destinations.watched:
-            self._go(choices or self._destinations.goals.spot(item))
+            self._go(choices or self._destinations.goals.expected_at(item))
             return
         search = self._destinations.search(item, self._now)
         if choices:
@@ -155,7 +155,7 @@ class NavigationService:
         if not self._destinations.watched:
             self._io.log.warning("nobody looks any more", item=search.item)
             self._search = None
-            self._go(self._destinations.goals.spot(search.item))
+            self._go(self._destinations.goals.expected_at(search.item))
             return
         pose = self.state.pose
         if pose is None or search.timed_out(now):

@@ -35,10 +35,12 @@ MAX_DISTANCE = 50.0
 
 
 class Drivers:
-    """Drivers of base, arm and gripper; `told(state, detail)` is called when the brake is applied or released."""
+    """Drivers of base, arm and gripper; `on_brake(state, detail)` is called when the brake is applied or released."""
 
-    def __init__(self, config: SimConfig, io: Io, body: Body, pose: Pose2, told: Callable[[str, str], None]) -> None:
-        self._config, self._io, self._body, self._told = config, io, body, told
+    def __init__(
+        self, config: SimConfig, io: Io, body: Body, pose: Pose2, on_brake: Callable[[str, str], None]
+    ) -> None:
+        self._config, self._io, self._body, self._on_brake = config, io, body, on_brake
         self.setpoint: Array = np.array([*pose, *body.home_arm])
         self.base = BaseDriver(config, pose)
         self._arm = ArmDriver(np.array(body.home_arm), config.stream_timeout, body.arm_limits)
@@ -104,13 +106,13 @@ class Drivers:
         if resumes and self.base.stopped:
             self.base.stopped = False
             io.log.info("resumed", by=resumes[-1].source)
-            self._told("running", "")
+            self._on_brake("running", "")
         if not stops:
             return
         actual = self._body.joints.copy()
         if not self.base.stopped:
             io.log.warning("stopped", reason=stops[-1].reason, by=stops[-1].source)
-            self._told("stopped", stops[-1].reason)
+            self._on_brake("stopped", stops[-1].reason)
             self.setpoint = actual.copy()
         self.base.halt((float(actual[0]), float(actual[1]), float(actual[2])))
         self._arm.halt(actual[3:])

@@ -47,7 +47,7 @@ class Sensors:
         noise, missing = (config.lidar_noise, config.lidar_missing) if bought else (0.0, 0.0)
         self._lidar = Lidar(body.names, body.lidar_site, noise, missing, io.rng)
 
-    def feel(self, t: float) -> None:
+    def publish_state(self, t: float) -> None:
         """Publish odometry and joint states."""
         io, body = self._io, self._body
         arm = body.joints.tolist()
@@ -77,7 +77,7 @@ class Sensors:
             ),
         )
 
-    def scan(self, t: float) -> None:
+    def publish_scan(self, t: float) -> None:
         """Publish one scan of the lidar."""
         ranges = self._lidar.scan(self._body.model, self._body.data)
         scan = m.LaserScan(

@@ -107,7 +107,7 @@ class SimService:
         physics.contacts.restore(state.touches)
         own.battery = Battery(state.charge)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
-        own.tell("stopped" if state.stopped else "running", "resumed")
+        own.publish_status("stopped" if state.stopped else "running", "resumed")
 
     def _save(self) -> None:
         """Save the world, twice a second."""
@@ -134,7 +134,7 @@ class SimService:
 
     # --- one tick
     def step(self, now: float) -> None:
-        (before, after), *guests = [unit.move(now) for unit in self._units]
+        (before, after), *guests = [unit.take_commands(now) for unit in self._units]
         physics = self.physics
         x, y, *_ = physics.joints.tolist()
         physics.obstacles.advance(physics.data, (x, y), DT)
@@ -163,7 +163,7 @@ class SimService:
     def _answer_pause(self, payload: bytes) -> bytes:
         self.paused = msgspec.json.decode(payload or b'{"paused": true}', type=Pause).paused
         for unit in self._units:
-            unit.tell("paused" if self.paused else "running")
+            unit.publish_status("paused" if self.paused else "running")
         return msgspec.json.encode({"paused": self.paused})
 
     def _answer_reset(self, payload: bytes) -> bytes:

@@ -34,7 +34,7 @@ class Unit:
     def begin(self, pose: Pose2, world: str) -> None:
         """Create drivers and sensors for a world just laid out, the robot at `pose` [map], and publish the model."""
         config, io, physics, self.world = self._config, self.io, self._physics, world
-        self.drivers = Drivers(config, io, self.body, pose, self.tell)
+        self.drivers = Drivers(config, io, self.body, pose, self.publish_status)
         self.sensors = Sensors(self.body, physics.seed + self._number, config, io, pose)
         self.battery = Battery(config.battery)
         self._reached: tuple[bool, str] = (False, "")
@@ -44,9 +44,9 @@ class Unit:
         model = m.SimModel(scene=io.world.name, seed=physics.seed, epoch=self._epoch, mjcf=mjcf, files=physics.files)
         io.publish(topics.SIM_MODEL, model)
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
-        self.tell("running")
+        self.publish_status("running")
 
-    def tell(self, state: Any, detail: str = "") -> None:
+    def publish_status(self, state: Any, detail: str = "") -> None:
         """Publish the simulation's status."""
         status = m.SimStatus(
             state=state,
@@ -59,7 +59,7 @@ class Unit:
         )
         self.io.publish(topics.SIM_STATUS, status)
 
-    def move(self, now: float) -> tuple[Array, Array]:
+    def take_commands(self, now: float) -> tuple[Array, Array]:
         """Take commands; returns the set-points (10,) at the beginning and at the end of this tick."""
         if self.io.fresh:
             self.drivers.take_commands(now)
@@ -68,14 +68,14 @@ class Unit:
     def publish(self, tick: int, t: float) -> None:
         """Publish the robot's measurements and the state of the world after the tick that ends at `t` [s]."""
         io, body, data = self.io, self.body, self._physics.data
-        self.sensors.feel(t)
+        self.sensors.publish_state(t)
         base = self.drivers.base
         reached = (base.reached(self.sensors.odometry.believed), base.target_id)
         if reached != self._reached:
             self._reached = reached
             io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
         if tick % SCAN_TICKS == 0:
-            self.sensors.scan(t)
+            self.sensors.publish_scan(t)
         if tick % BATTERY_TICKS == 0:
             vx, vy, omega, *_ = body.rates.tolist()
             self.battery.draw(vx, vy, omega, BATTERY_TICKS * DT)

@@ -295,7 +295,7 @@ def test_what_another_command_wanted_moved_is_not_disturbed() -> None:
 def test_touches_are_in_the_evidence_and_hits_too() -> None:
     found = recorder(GOOD)
     touches = [touch(0, force=20.0), touch(1, "desk_leg", force=70.0, impulse=1.24), touch(2, force=0.9)]
-    found.feel(m.SimContacts(t=3.0, epoch="e", touches=touches))
+    found.note_contacts(m.SimContacts(t=3.0, epoch="e", touches=touches))
     seen = found.conclude((WANT,), MUG)
     assert seen.hits == ["base on desk leg: 70 N, 1.2 Ns in 0.05 s at 2.5 s"]
     assert seen.touches == ["base on desk: 20 N, 0.0 Ns in 0.05 s at 2.5 s", *seen.hits]

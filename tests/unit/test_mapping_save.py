@@ -159,13 +159,13 @@ class Course:
                 self.course.pictures += 1
             elif wanted == "survey":
                 self.barred.append([*self.course.barred])
-                self.course.surveyed(self.surveys.pop(0) if self.surveys else Survey(0, 1.0, None))
+                self.course.take_survey(self.surveys.pop(0) if self.surveys else Survey(0, 1.0, None))
             elif isinstance(wanted, m.NavGoal):
                 self.goals.append(wanted)
                 status = "arrived" if (wanted.x, wanted.y) == pose[:2] else self.status
                 pose = (wanted.x, wanted.y, wanted.theta) if status == "arrived" else pose
                 feedback = m.NavigationFeedback(goal_id=wanted.id, status=status)  # type: ignore[arg-type]
-                self.course.heard(feedback, now)
+                self.course.take_feedback(feedback, now)
 
 
 def test_it_looks_around_follows_the_surveys_and_drives_home() -> None:
@@ -196,12 +196,12 @@ def test_a_blocked_view_is_tried_once_more_at_the_most() -> None:
         now += 0.05
         wanted = course.step((1.0, 0.0, 0.0), now, busy=False)
         if wanted == "survey":
-            course.surveyed(Survey(0, 4.0, None) if course.barred else beyond)
+            course.take_survey(Survey(0, 4.0, None) if course.barred else beyond)
         elif isinstance(wanted, m.NavGoal):
             looks = (wanted.x, wanted.y) == (1.0, 0.0)
             goals += not looks
             status, code = ("arrived", "") if looks else ("failed", "BLOCKED")
-            course.heard(m.NavigationFeedback(goal_id=wanted.id, status=status, code=code), now)  # type: ignore[arg-type]
+            course.take_feedback(m.NavigationFeedback(goal_id=wanted.id, status=status, code=code), now)  # type: ignore[arg-type]
     assert course.phase == "returning" and goals == 2
 
 

@@ -438,9 +438,9 @@ def test_a_passing_place_is_off_the_way_of_the_person() -> None:
 
 def test_people_put_off_a_time_limit_but_not_for_ever() -> None:
     progress = Progress(NavigationConfig(), 0.0)
-    progress.allow(10.0, 0.0)
+    progress.set_limit(10.0, 0.0)
     for t in np.arange(0.0, 200.0, 0.05):
-        progress.hold_up(float(t))
+        progress.extend(float(t))
     assert progress.deadline == pytest.approx(10.0 + HELD_UP, abs=0.2)
 
 

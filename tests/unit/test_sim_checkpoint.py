@@ -56,7 +56,7 @@ def test_the_world_keeps_its_name_and_odometry_and_the_process_does_not(tmp_path
     assert statuses[0].world == statuses[1].world
     sensors = second.service.sensors
     believed = sensors.odometry.believed
-    sensors.feel(0.0)
+    sensors.publish_state(0.0)
     assert np.allclose(believed, sensors.odometry.believed)
 
 

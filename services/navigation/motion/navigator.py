@@ -82,7 +82,7 @@ class Navigator:
         if not self.begun:
             self._begin(pose, now)
         self._progress.check(now)
-        self._recovery.came_by(pose)
+        self._recovery.note_pose(pose)
         target = self._go_on(pose, points, obstacles, now)
         here, stands, radius = (pose[0], pose[1]), self._map.people_pass, self._config.footprint_radius
         moving = [o for o in obstacles if o.moves]
@@ -91,7 +91,7 @@ class Navigator:
             return target
         self.doing = "GIVING_WAY"
         self._recovery.made_room(now)
-        self._progress.excuse(now)
+        self._progress.restart_clock(now)
         self._contacts.interrupt()
         return self._targets.aside((*aside, pose[2]))
 
@@ -105,7 +105,7 @@ class Navigator:
     def _without_odometry(self, now: float) -> m.BaseTarget | None:
         """The goal itself as the target, once a second: without odometry the base's own controller does the rest."""
         if self._progress.deadline == math.inf:
-            self._progress.allow(self._config.timeout_margin * 2, now)
+            self._progress.set_limit(self._config.timeout_margin * 2, now)
         if now > self._progress.deadline:
             raise Ended("failed", "TIMEOUT", "no odometry, and the base never reported that it arrived")
         if not self._route.due(now):
@@ -127,16 +127,16 @@ class Navigator:
     def give_way(self, spot: Pose2, now: float) -> m.BaseTarget:
         """The target while another robot goes first: `spot` [map]; raises `Ended` TIMEOUT."""
         self._progress.check(now)
-        self._progress.hold_up(now)
+        self._progress.extend(now)
         self._recovery.under_way, self.doing = None, "GIVING_WAY"
-        self.waiting.clear()
+        self.waiting.end()
         return self._targets.aside(spot)
 
     def go_on(self, now: float) -> None:
         """Go on to the goal after giving way: the next step plans from where the robot is."""
         self._progress.restart(now)
         self._route.follower, self._route.planned_at = None, -math.inf
-        self.waiting.clear()
+        self.waiting.end()
 
     def relocated(self, now: float) -> None:
         """Begin anew with the next step, keeping only the goal: the pose estimate has jumped."""
@@ -144,7 +144,7 @@ class Navigator:
         self._route.abandon()
         self._targets.start, self._progress.deadline = None, math.inf
         self._progress.restart(now)
-        self.waiting.clear()
+        self.waiting.end()
 
     def _begin(self, pose: Pose2, now: float) -> None:
         """Make the first plan.
@@ -157,7 +157,7 @@ class Navigator:
             return
         if not self._route.possible(pose):
             raise Ended("failed", "NO_PATH", "no free way leads there")
-        self._progress.allow(self._config.timeout_margin + self._config.blocked_wait * 10, now)
+        self._progress.set_limit(self._config.timeout_margin + self._config.blocked_wait * 10, now)
 
     def _plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> bool:
         """Choose pose and path anew; when there is no path now, returns False and changes nothing."""
@@ -166,7 +166,7 @@ class Navigator:
             self.recoveries += 1
             self.doing = "DETOUR"
         if found in ("new", "detour") and self._route.follower is not None:
-            self._progress.follow(self._route.follower.remaining(pose), now)
+            self._progress.begin_path(self._route.follower.remaining(pose), now)
         return bool(found)
 
     def _follow(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
@@ -193,11 +193,11 @@ class Navigator:
         ):
             self.doing = ""
         if ahead.blocked:
-            self.doing = self.waiting.on_the_way(pose, obstacles, now)
-            if self.waiting.over(now):
+            self.doing = self.waiting.on_blocked_path(pose, obstacles, now)
+            if self.waiting.too_long(now):
                 self._recover(pose, now, "the way is blocked", by_people=self.waiting.for_people)
             return
-        self.waiting.clear()
+        self.waiting.end()
         if met := self._contacts.check(pose, ahead.pose, now):
             self.met = met
             self._recover(pose, now, "held up by something unseen", "HELD_UP")
@@ -216,11 +216,11 @@ class Navigator:
         """The target while there is no path: stand, plan every second, begin a recovery after too long."""
         if self._route.due(now):
             if self._plan(pose, now, obstacles):
-                self.waiting.clear()
+                self.waiting.end()
                 return self._targets.next(pose)
-            self.waiting.shut(self._route.blocked_by(pose, now))
-        self.doing = self.waiting.without_a_way(pose, obstacles, now)
-        if self.waiting.over(now):
+            self.waiting.note_blocker(self._route.blocked_by(pose, now))
+        self.doing = self.waiting.without_path(pose, obstacles, now)
+        if self.waiting.too_long(now):
             by_people = self.waiting.for_people
             who = "somebody" if by_people else "something"
             self._recover(pose, now, f"{who} stands in every way there", by_people=by_people)
@@ -231,7 +231,7 @@ class Navigator:
         self._recovery.back_off(pose, now, why, PERSON if by_people else "BLOCKED", doing == "HELD_UP")
         self.recoveries += 1
         self.doing = doing
-        self.waiting.clear()
+        self.waiting.end()
 
     def _go_back(
         self, retreat: Retreat | PassingPlace, pose: Pose2, points: Array | None, people: Sequence[Obstacle], now: float
@@ -239,11 +239,11 @@ class Navigator:
         """The target of a recovery under way; plans anew once that is over."""
         if isinstance(retreat, PassingPlace):
             self.doing = "GIVING_WAY"
-            self._progress.hold_up(now)
+            self._progress.extend(now)
         if retreat.over(pose, people, now):
             self._recovery.under_way = None
             self._progress.restart(now)
             self._route.follower = None
             self._plan(pose, now)
-            self.waiting.clear()
+            self.waiting.end()
         return self._targets.next(retreat.step(pose, points))

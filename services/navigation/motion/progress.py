@@ -45,7 +45,7 @@ class Progress:
         if now > self.deadline:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
 
-    def hold_up(self, now: float) -> None:
+    def extend(self, now: float) -> None:
         """Extend the time limit, by HELD_UP at most; call in each step in which people keep the robot waiting."""
         self._best_at = now
         lost = min(now - self._held_at, TICK)
@@ -54,11 +54,11 @@ class Progress:
             self._held_up += lost
             self.deadline += lost
 
-    def allow(self, seconds: float, now: float) -> None:
+    def set_limit(self, seconds: float, now: float) -> None:
         """Set the time limit of a goal for which there is no path."""
         self.deadline = now + seconds
 
-    def follow(self, length: float, now: float) -> None:
+    def begin_path(self, length: float, now: float) -> None:
         """Begin a path of `length` [m]: the time limit is put off until it can be driven, never brought forward."""
         self._best, self._best_at = length, now
         limit = now + length / self._config.min_average_speed + self._config.timeout_margin
@@ -71,7 +71,7 @@ class Progress:
         self._best, self._best_at = remaining, now
         return True
 
-    def excuse(self, now: float) -> None:
+    def restart_clock(self, now: float) -> None:
         """Count the time without progress from now on: there was a known reason for it."""
         self._best_at = now
 

@@ -36,7 +36,7 @@ class Recovery:
         """Note that the robot makes room; call in each step in which it stops or steps aside for somebody."""
         self._standoff.met(now)
 
-    def came_by(self, pose: Pose2) -> None:
+    def note_pose(self, pose: Pose2) -> None:
         """Note where the robot is [map], in each step, for the way back."""
         self._breadcrumbs.add(pose)
 

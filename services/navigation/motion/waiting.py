@@ -29,21 +29,21 @@ class Waiting:
         """True when only people block the way."""
         return self._blocker == "people"
 
-    def on_the_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
+    def on_blocked_path(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
         """Call in each step in which the path is blocked; returns what the robot does (`Navigator.doing`)."""
-        self._progress.excuse(now)
+        self._progress.restart_clock(now)
         somebody = self._map.people_pass or anybody_near((pose[0], pose[1]), people)
         self._blocker = "people" if somebody else "things"
         return self._before(pose, people, now, by_people=False)
 
-    def without_a_way(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
+    def without_path(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> str:
         """Call in each step in which there is no path to the goal; returns what the robot does (`Navigator.doing`)."""
         doing = self._before(pose, people, now, self.for_people)
         if self._blocker == "newcomers":
-            self._progress.hold_up(now)
+            self._progress.extend(now)
         return doing
 
-    def shut(self, blocker: Blocker) -> None:
+    def note_blocker(self, blocker: Blocker) -> None:
         """Note what kind of obstacle leaves no path to the goal."""
         self._blocker = blocker
         self._map.let_people_pass(self.for_people and self._recovery.stands_its_ground)
@@ -51,19 +51,19 @@ class Waiting:
     def _before(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool) -> str:
         """ROBOT_IN_WAY, PERSON_IN_WAY or WAITING by what is near; makes room for a person who waits for the robot."""
         if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
-            self._progress.hold_up(now)
+            self._progress.extend(now)
             self._timer.clear()
             return "ROBOT_IN_WAY"
         doing = waiting_for((pose[0], pose[1]), people, by_people)
         if doing == PERSON:
-            self._progress.hold_up(now)
+            self._progress.extend(now)
             self._recovery.let_pass(pose, people, now)
         return doing
 
-    def over(self, now: float) -> bool:
-        """True when the robot has waited too long; call in each step after `on_the_way` or `without_a_way`."""
+    def too_long(self, now: float) -> bool:
+        """True when the robot has waited too long; call in each step after `on_blocked_path` or `without_path`."""
         return self._timer.blocked(self._blocker != "things", now) > self._limit
 
-    def clear(self) -> None:
+    def end(self) -> None:
         """End the waiting: the path is free, or another one is tried."""
         self._timer.clear()
