@@ -1,6 +1,6 @@
 """`tidybot replay --export`: a mission cut out of a recording, or its timeline with pictures."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +52,7 @@ def cut(recording: Recording, begin: float, end: float) -> Iterator[Row]:
     yield from (row for row in recording.rows if begin <= row.t <= end)
 
 
-def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = print) -> None:
+def export(path: Path, target: Path, wanted: str) -> None:
     """Write one mission as what the name of `target` says.
 
     Raises:
@@ -75,7 +75,7 @@ def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = p
         target.write_text(page(record, seen), encoding="utf-8")
     else:
         _write(recording, target, begin, end)
-    say(f"{target}  mission {record['id']} “{record['command']}”  {target.stat().st_size / 1e6:.1f} MB")
+    print(f"{target}  mission {record['id']} “{record['command']}”  {target.stat().st_size / 1e6:.1f} MB")
 
 
 def _write(recording: Recording, target: Path, begin: float, end: float) -> None:

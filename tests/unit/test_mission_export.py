@@ -131,7 +131,7 @@ def test_a_mission_that_just_began_has_a_timeline(entries: list[Any]) -> None:
 
 def test_a_mission_is_cut_out_with_what_was_known_before(recording: Recording, tmp_path: Path) -> None:
     target = tmp_path / "one.mcap"
-    mission_export.export(recording.path, target, "m-1", say=lambda text: None)
+    mission_export.export(recording.path, target, "m-1")
     cut = Recording(target)
     assert not cut.torn
     assert cut.facts["run"]["scene"] == "minimal"
@@ -156,7 +156,7 @@ def test_a_timeline_from_a_recording_has_key_frames(
 ) -> None:
     monkeypatch.setattr(key_frames, "SIZE", (32, 24))
     target = tmp_path / "one.html"
-    mission_export.export(recording.path, target, "m-1", say=lambda text: None)
+    mission_export.export(recording.path, target, "m-1")
     page = target.read_text()
     assert page.count("data:image/jpeg;base64,") == 4, "two states end, a fault, the outcome"
     assert "PLANNING ends" in page and "base: BLOCKED" in page
