@@ -1,5 +1,6 @@
 """The choice of a grasp, after which the object can be put down as it is to stand: from here or from another stance."""
 
+import math
 from collections.abc import Collection
 
 import numpy as np
@@ -9,7 +10,7 @@ from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
-from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.grasp import POOR, Grasp, worse
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others
@@ -28,8 +29,8 @@ def chosen(
     """The plan of a grasp that is not among those `tried`; `target`, `around`, `touched`: as in `plan_grab`.
 
     It is taken so that it can be put down on the receptacle `to`. What lies is taken so that it can be stood up, there
-    or where things are brought. Where that cannot be from here the base is sent elsewhere, once; after that, or where
-    no stance is better, it is taken so that it can be laid down.
+    or where things are brought. Where that cannot be from here, or only with a poor hold, the base is sent elsewhere,
+    once; after that, or where no stance is better, it is taken so that it can be laid down, and held as it can be.
 
     Raises:
         Failure: as `plan_grab`; with the stance from which there is a grasp, where there is one.
@@ -38,14 +39,17 @@ def chosen(
     failure = Failure("UNREACHABLE", "")
     for stand_on in (height, None) if height is not None else (None,):
         try:
-            return (
-                yield from robot.work(
-                    plan_grab, planner_of(robot), target, around, robot.joints.copy(), config.approach_distance,
-                    config.lift_height, config.reach, tried, touched, stand_on,
-                )
+            plan = yield from robot.work(
+                plan_grab, planner_of(robot), target, around, robot.joints.copy(), config.approach_distance,
+                config.lift_height, config.reach, tried, touched, stand_on,
             )  # fmt: skip
         except Failure as other:
             failure = other
+        else:
+            if worse(plan.grasp, POOR) and not tried and found.label not in robot.sent_to:
+                poor = Failure("UNREACHABLE", f"the {found.label} is hardly held from here")
+                yield from _look_elsewhere(robot, found, poor, stand_on, POOR)
+            return plan
         if failure.code != "UNREACHABLE":
             raise failure
         if not tried and (stand_on is None or (target.lies and found.label not in robot.sent_to)):
@@ -66,8 +70,10 @@ def _stands_on(robot: Robot, found: WorldObject, target: Target, to: str) -> flo
     return surface.center[2] if surface is not None and not surface.depth else None
 
 
-def _look_elsewhere(robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None) -> Steps[None]:
-    """Return where no other stance helps.
+def _look_elsewhere(
+    robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None, least: float = -math.inf
+) -> Steps[None]:
+    """Return where no other stance helps; `least`: worth of the grasp that is wanted.
 
     Raises:
         Failure: the one to plan a grasp, with where the base would have to stand for one.
@@ -75,7 +81,7 @@ def _look_elsewhere(robot: Robot, found: WorldObject, failure: Failure, stand_on
     config, objects, told = robot.config, robot.source.objects(), robot.sent_to.pop(found.label, [])
     stance = yield from robot.work(
         other_stance, planner_of(robot), robot.io.household, found, objects, [robot.base, *told], robot.joints.copy(),
-        config.approach_distance, config.lift_height, config.reach, stand_on,
+        config.approach_distance, config.lift_height, config.reach, stand_on, least,
     )  # fmt: skip
     if stance is None:
         return

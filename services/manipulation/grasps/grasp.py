@@ -21,6 +21,10 @@ HANDLE_ROOM, HANDLE_POINTS = 0.008, 4
 goes through one, noise and the fit's error do not reach as far."""
 CERTAIN = 0.006
 """Largest spread [m] of measured extents from which an object is said to be too wide without a try."""
+POOR = 0.0
+"""Worth of a grasp on a surface below which a part, as a handle, or another stance is looked for. Chosen: that of pads
+of which half lies on a slope that they just do not slide off; of pliers and an iron that were lost it was -.12 to
+-.27."""
 USUAL_VESSEL = KINDS["bowl"]
 """Whose wall is taken for that of a vessel of a kind that has none."""
 
@@ -89,6 +93,11 @@ def shown(
 def certainly_too_wide(target: Target, widest: float) -> bool:
     """Neither side of an object goes between the fingers, even if it is smaller than measured by twice the spread."""
     return target.spread <= CERTAIN and min(target.size[:2]) - 2 * target.spread > widest
+
+
+def worse(grasp: Grasp, least: float) -> bool:
+    """A grasp on the surface is worth less than that; one by rule is as good as its rule."""
+    return grasp.on_surface and grasp.worth < least
 
 
 def upper_end(target: Target, rotation: Array) -> float | None:

@@ -16,7 +16,7 @@ from services.manipulation.arm.trajectory import Leg, connect, legs
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
 from services.manipulation.grasps.evidence import as_held, believed, has_parts, seen_between
-from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.grasp import POOR, Grasp
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
 from services.manipulation.grasps.over_edge import flat_and_wide, is_round, over_an_edge
@@ -27,12 +27,6 @@ from services.manipulation.grasps.target import Target
 PLAINLY = 0.012
 """How much wider [m] than the hand takes a flat thing is that is only taken over an edge: the error of extents of
 what is seen in part."""
-FEWEST = 4
-"""Grasps of a completed surface below which there is next to nothing to hold. Chosen: as many as are tried."""
-POOR = 0.0
-"""Worth of a grasp on a surface below which a part, as a handle, is looked for. Chosen: that of pads of which half lies
-on a slope that they just do not slide off.
-"""
 REMEMBERED = 4
 """Targets of which answers are kept: one as measured, as seen, and without what is completed of it, and one more."""
 CARTESIAN_STEP = 0.02
@@ -116,7 +110,7 @@ class Planner:
         """
         found = believed(target)
         if found.family == "irregular":
-            return found if len(self._on_surface(found)) >= FEWEST else replace(found, shape="long")
+            return found if self._worth(found) >= POOR else max(found, replace(found, shape="long"), key=self._worth)
         if not self._nowhere_held(found) or not has_parts(found):
             return found
         parts = replace(found, shape="long")
@@ -126,7 +120,11 @@ class Planner:
         """Something round that stands, and was seen, is held well nowhere by its wall."""
         if not is_round(target) or min(target.size[:2]) <= self.arm.widest or flat_and_wide(target, self.arm.widest):
             return False
-        return not self._rules(target) and all(grasp.worth < POOR for grasp in self._on_surface(target))
+        return not self._rules(target) and self._worth(target) < POOR
+
+    def _worth(self, target: Target) -> float:
+        """That of the best grasp on its surface."""
+        return max((grasp.worth for grasp in self._on_surface(target)), default=-np.inf)
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen

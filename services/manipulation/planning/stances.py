@@ -37,20 +37,21 @@ def other_stance(
     lift: float,
     reach: float,
     stand_on: float | None = None,
+    least: float = -math.inf,
 ) -> Pose2 | None:
     """A pose (x, y, theta) [map] before an object from which a whole grab of it can be planned; None if none was found.
 
     `objects`: all that is known to stand around; `but`: where the base stands and has been sent to; `joints` (7,) of
-    the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`: as in `plan_grab`.
+    the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`, `least`: as in `plan_grab`.
     """
     around = others(objects, found)
     for pose in stances(household, found, but, STAND_OFFS)[:MOST]:
         target, solids = target_of(found, pose, household), obstacles(household, pose, around, margin=MARGINS[0])
         # What has no straight way in and up needs no search for the ways there and back.
-        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints):
+        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints, least):
             continue
         with suppress(PlanError):
-            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on)
+            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on, least)
             return pose
     return None
 
