@@ -6,7 +6,7 @@ verb that is left out. `common/language/word_order.py` applies them.
 
 import re
 
-from common.language.lexicon import FAMILY
+from common.language.lexicon import FAMILY, TO_GO
 from common.language.verb_classes import one_of
 
 TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
@@ -41,16 +41,11 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(f"^{pattern}$"), result)
     for pattern, result in (
         # Whom or what it is for.
-        (rf"(?:go|nip|pop|run|walk|drive|head|dash|hop|come)(?: over| back)? (?:to|into) {NP} for "
-         r"((?:the|my|an?|some) .+)", r"bring me \2 from \1"),
-        (r"((?!look|search|wait|check|hunt|ask|go|nip|pop|run|walk|drive|head|dash|hop|come)\w+ .+) "
+        (rf"{TO_GO}(?: over| back)? (?:to|into) {NP} for ((?:the|my|an?|some) .+)", r"bring me \2 from \1"),
+        (rf"((?!look|search|wait|check|hunt|ask|{TO_GO})\w+ .+) "
          r"for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
          r"him|her|them|"
          r"(?:the|my|our|your) (?:\w+ )?\w+|\w+ing .+)", r"\1"),
-        (r"(?:go|drive|walk|run|head|move|come) (?:over )?(?:to|into|in) (.+?) and (?:tell "
-         r"me|see|look|report|check|find out)(?: back)? (?:what "
-         r"(?:you (?:can )?(?:see|find)|"
-         r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
         (r"(tidy|clean|clear|straighten)(?: up)? in ((?:the|my|our) \w+(?: \w+)?)", r"tidy \2"),
         (rf"(?:can|could|would|might) {NP} (?:go|move|be put|be placed) ({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
         (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
@@ -125,7 +120,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"bring me \1"),
         # Coming with something is bringing it.
         (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
-        (rf"(?:go|drive|walk|run|head|come) (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),
+        (rf"{TO_GO} (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),
         # What is to be the case.
         (rf"(?:go and )?(?:make sure|see|see to it|ensure|make certain|take care)(?: that)? {NP} (?:is|are|gets?|"
          rf"goes|go|ends? up)"

@@ -10,7 +10,6 @@ from common.language.dialect import plainly_spelled
 from common.language.normalise import REMEMBERED
 from common.language.shorter import SHORTER
 
-_OF_PEOPLE = "i|you|we|they|he|she|it|who"
 _SPELLINGS = {
     word: " ".join(plain.split("_"))
     for row in (
@@ -37,6 +36,11 @@ _STATE = (
     "chipped|clean|great|lovely|nice|fine|over|up|coming|starting|too \\w+)"
 )
 """How something or somebody is, behind a short `is`: `the soup's cold`; other words there are things that it has."""
+_AFTER_IS = (
+    "(?:a|an|the|in|on|at|not|so|too|very|coming|going|getting|here|there|for|to|from|with|by|under|behind|beside|near|"
+    "next|no|still|also|always|usually|probably|never|supposed|meant|wanted|needed|required|due|welcome)"
+)
+"""What stands behind a short `is`, and behind nobody's name: `the bowl's wanted`, `the apple's for Priya`."""
 _CONTRACTIONS = tuple(
     (re.compile(short), long)
     for short, long in (
@@ -67,6 +71,7 @@ _CONTRACTIONS = tuple(
         (r"\bya(?= know\b| see\b)|(?<=can )ya\b|(?<=could )ya\b|(?<=would )ya\b|(?<=will )ya\b", "you"),
         (r"(?<!\w)'em\b|\bem\b", "them"),
         (r"(?<!\w)'cause\b", "because"),
+        (r"\b(what|where|how|when|why)'d\b", r"\1 did"),
         (r"\b(what|where|who|how|when|why)'?d (?=i|you|we|they|he|she)", r"\1 did "),
         (r"\b(?:two|too) (?=(?:the|my|our) )", "to "),
         (r"\bin here\b", "here"),
@@ -82,9 +87,9 @@ _CONTRACTIONS = tuple(
         (r"\b(whatever|everything|anything|something|nobody)'?s\b", r"\1 is"),
         (r"\b(it|she|he|\w{3,})'s (?=(?:got|gone|been|ended)\b)", r"\1 has "),
         (r"\b(it|she|he)'s\b", r"\1 is"),
-        (r"\b(\w{2,})'s (?=(?:a|an|the|in|on|at|not|so|too|very|coming|going|getting|here|there)\b)", r"\1 is "),
+        (rf"\b(\w{{2,}})'s (?={_AFTER_IS}\b)", r"\1 is "),
         (
-            rf"(^|[,.;!?] |\b(?:and|so|but|because) )"
+            rf"(^|[,.;!?] |\b(?:and|so|but|because|that) )"
             r"((?:(?:the|my|our|that|this|your|his|her) (?:\w+ ){0,2})?\w{3,})'s "
             rf"(?=(?:(?:all|a bit|quite|completely|already|just|no|too|totally|getting) )*{_STATE}"
             r"(?:[,.;!?]|$| (?:and|so|now|again|today|but|already|in|on|at|here|there|to be)\b))",
@@ -99,10 +104,10 @@ _CONTRACTIONS = tuple(
         (r"\b(?:you're|youre)\b", "you are"),
         (r"\b(they|we)'re\b", r"\1 are"),
         (r"\b(i|you|they|we)'?ve\b", r"\1 have"),
-        (rf"\b({_OF_PEOPLE}|that|this|there)'ll\b", r"\1 will"),
+        (r"\b(\w+)'ll\b", r"\1 will"),
         (r"^ill(?= \w)", "i will"),
         (r"\b(i|you|they|we|he|she)'d (better)\b", r"\1 should"),
-        (r"\b(i|you|they|we|he|she|it|that)'d\b", r"\1 would"),
+        (r"\b(?!o')(\w+)'d\b", r"\1 would"),
         (r"\bid (?=like|love|appreciate|prefer|be|want|need|rather)", "i would "),
         (r"\blet'?s\b", "let us"),
         (r"^(please )?go (?:over )?(?:and )?(?=(?:tell|say|inform|announce|wish|let \w+(?: \w+)? know)\b)", r"\1"),

@@ -12,7 +12,7 @@ from common.language.clauses import cut_clauses, without_fillers
 from common.language.conditional import conditional
 from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
-from common.language.lexicon import A_VERB, A_WISH, COMMANDING, HANDLING
+from common.language.lexicon import A_VERB, A_WISH, COMMANDING, HANDLING, TO_GO
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
 from common.language.place_told import with_whereabouts
@@ -47,12 +47,17 @@ _BUT_FIRST = re.compile(
 _LATER = re.compile(
     r"^(?P<first>.+?),? (?P<word>before|after|once|when|as soon as) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$"
 )
-_GO_AND_ASK = re.compile(
-    r"\b(?:go|drive|walk|run|head|nip|pop|come|wander|hop|dash)(?: over| along| across| down| up)* (?:to|into|in) "
-    r"(?:the|my|our) \w+(?: \w+)? (?:and|to) (?:see|tell me|check|look|find out|report|let me know) "
-    r"(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) \w+)"
+_GO_AND = (
+    rf"\b{TO_GO}(?: over| along| across| down| up)* (?:to|into|in) (?P<place>(?:the|my|our) \w+(?: \w+)?)"
+    r" (?:and|to) (?:see|tell me|check|look|find out|report|let me know)(?: back)? "
 )
+_GO_AND_ASK = re.compile(rf"{_GO_AND}(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) (?!it\b|there\b)\w+)")
 """`go to the desk and see` before a question that names the place itself: the way there need not be said."""
+_GO_AND_LOOK = re.compile(
+    rf"{_GO_AND}what (?:is (?:(?:in|on) )?(?:there|it)|there is|you (?:can )?(?:see|find)(?: there)?)"
+    r"(?=[,.;!?]|$| and\b)"
+)
+"""The same before a question about the place by a pronoun."""
 _AND_TELL = re.compile(
     r"^(?P<look>(?:go (?:and )?|(?:can|could|would|will) you |please )*(?:look|check|see|find out|have a "
     r"look|take a look)\b"
@@ -116,7 +121,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _AND_TELL.sub(r"\g<look>", whole)
-    whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
+    whole = _GO_AND_LOOK.sub(r"go and look in \g<place>", _GO_AND_ASK.sub("tell me ", whole))
+    whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", whole)
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
     whole = with_shared_noun(whole)

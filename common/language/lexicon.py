@@ -85,6 +85,8 @@ COMMANDING: frozenset[str] = frozenset(
 """First words that make a clause a command; without those that are rather nouns."""
 A_VERB = rf"(?:{'|'.join(sorted(COMMANDING))})"
 """Regular expression for one of the words in COMMANDING."""
+TO_GO = rf"(?:go|{'|'.join(GO.split(' | '))})"
+"""Regular expression for a verb of going."""
 A_WISH = r"(?:i|we) (?:really |would |do )*(?:want|need|like|fancy)"
 """How somebody says that they want something."""
 HANDLING: frozenset[str] = frozenset(

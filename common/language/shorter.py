@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.lexicon import A_VERB
+from common.language.lexicon import A_VERB, TO_GO
 
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
 _PREPOSITION = (
@@ -74,8 +74,62 @@ SHORTER = tuple(
         (r"\b(?:take|get|shift|haul|drag|bring) yourself (?:over )?(?=here|home|back)", "come "),
         (r"^(back|home|here|over here) you come\b", r"come \1"),
         (
+            rf"\b({TO_GO}(?: over| back| off| across| along)*) (into|to) ((?:the|my) \w+(?: \w+)?) with (?:it|them)\b",
+            r"\1 \2 \3",
+        ),
+        (
+            r"\b(?:take|carry|bring) (?:it|them|that) (?:over )?(into|to) ((?:the|my) \w+(?: \w+)?)(?:,| and|, and) "
+            r"(?:then )?(?:stay|wait|remain|stand)(?: there)? "
+            r"(?:(?:and )?(?:holding|hold) it|with it)(?: in your hand)?\b",
+            r"go \1 \2",
+        ),
+        (
             r",? (?:and |so |then |back |straight |off )*(into|in|onto|to) ((?:the|my) \w+(?: \w+)?) with (it|them)\b",
             r" and put \3 \1 \2",
+        ),
+        (r"\b(?:a|an|that|this|the|some) ((?:\w+ ){1,2}?)of (?:mine|ours)\b", r"my \1"),
+        (r"\b(?:a|an|that|this|the|some) ((?:\w+ ){1,2}?)of yours\b", r"your \1"),
+        (r"\b(?P<all>(?:everything|all the \w+)\b[^,.;]*?) bar (?=the|my|our|one)", r"\g<all> except "),
+        (
+            r"^(?P<but>(?:except(?: for)?|apart from|other than|besides) (?:the|my|our) \w+(?: \w+)?), "
+            r"(?P<all>(?:everything|all the \w+)(?: (?:on|in|at) the \w+(?: \w+)?)?) (?P<rest>\w+ .+)$",
+            r"\g<all> \g<but> \g<rest>",
+        ),
+        (
+            r"\b(?:(?:swap|exchange|make|let|have) )?((?:the |my )?\w+ \w+) and ((?:the |my )?\w+ \w+),? "
+            r"(?:let them |should |are to |can |must )?"
+            r"(?:trade|swap|change|exchange|switch) (?:places|positions|spots)\b",
+            r"swap \1 and \2",
+        ),
+        (
+            r"\b(?:when|once|after|as soon as) (?:he|she|they|it|that|this) "
+            r"(?:is|are|has been|have been|has|have)(?: been)? "
+            r"(?:told|done|finished|settled|sorted)\b,?",
+            "then",
+        ),
+        (r"\bgive (?:me|us|everyone|everybody) a (?:shout|yell|holler|heads-up|heads up) (?=that\b)", "say "),
+        (r"\b(?:sing|call|shout|yell) out (?=that\b)", "say "),
+        (
+            r"\b(?:take|carry|bring|move) ((?:the|my) \w+(?: \w+)?) (?:through |over |along |across )?"
+            r"(?:to|into) the (\w+)(?: room)? and "
+            r"(leave|put|set|place|drop) it (?:down )?on the (\w+) there\b",
+            r"put \1 on the \2 \4",
+        ),
+        (r"(?<=\w),? (?:in the end|after all)(?=[?]|$)", ""),
+        (r"^(there (?:is|are) [^,.;?]+),? (?:is|are)(?: not| n't)? there[?.]+ (?=\w)", r"\1. "),
+        (r"\b(where (?:was|is|were|are) (?:it|they|(?:the|my) (?:\w+ )?\w+)) hiding\b", r"\1"),
+        (r"\bwhat (it|is|they|are) (it|is|they|are) (?:standing|sitting|lying|resting) on\b", r"where \1 \2"),
+        (
+            r"\b(?:which|what) room (?:has|have|holds|contains) ((?:the|my|a) \w+(?: \w+)??)(?: in it)?\b",
+            r"where is \1",
+        ),
+        (
+            r"\b(?:where|which (?:room|place)) are you (?:off|headed|heading|going|driving)(?: to)?\b",
+            "where are you going",
+        ),
+        (
+            r"\bit was (?:fine|better|good|nicer|all right|okay|ok|best)(?: just| right)? where it was\b",
+            "put it back where it was",
         ),
         (r"\bboth (?=(?:go|belong|need|should|must|have to)\b)", ""),
         (r",? (?:preferably|ideally|for preference),? (?=(?:the|a|my)\b)", ", "),

@@ -3,6 +3,7 @@
 import re
 
 from common.language.exchange import verb_first
+from common.language.lexicon import TO_GO
 from common.language.politeness import without_politeness
 from common.language.quantities import NUMBERS, UNITS
 
@@ -11,24 +12,31 @@ DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
 """Words of a length of time, as `quantities.duration` reads them."""
 _APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
 _LATER = "(?:from now|time|later|on)"
+_PASSED = (
+    rf"(?:when|once|after|as soon as) (?P<passed>{DURATION}) (?:are|is|have|has)(?: been)? "
+    r"(?:up|over|past|passed|gone(?: by)?|elapsed)"
+)
+_NOT_SOONER = r"(?:,? (?:and )?(?:not|no) (?:a (?:second|moment) )?(?:sooner|earlier|before)(?: please)?[.!]*)?"
 _FIRST = re.compile(
     rf"^(?:(?:in|after|wait(?: for)?|give (?:it|me)) (?P<time>{DURATION})(?: {_LATER})?|"
-    rf"(?P<later>{DURATION}) {_LATER}),? (?:and |then )*(?P<rest>.+)$"
+    rf"(?P<later>{DURATION}) {_LATER}|{_PASSED}),? (?:and |then )*(?P<rest>.+?){_NOT_SOONER}$"
 )
 _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.+)$")
 _LAST = re.compile(
-    rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER})$"
+    rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER}|{_PASSED})"
+    rf"{_NOT_SOONER}$"
 )
 _REMIND = re.compile(
     rf"^(?:(?:in|after) (?P<first>{DURATION})(?: {_LATER})?,? )?remind (?:me|us)(?: (?:in|after) (?P<time>{DURATION})"
     rf"(?: {_LATER})?)?,? (?:to|that|about) (?P<what>.+?)(?: (?:in|after) (?P<last>{DURATION})(?: {_LATER})?)?$"
 )
 """What somebody is to be told after a while."""
+_TELL = re.compile(r"^tell me that ")
 _WAKE = re.compile(rf"^wake (?:me|us)(?: up)? (?:in|after) (?P<time>{DURATION})(?: {_LATER})?$")
 _OURS = re.compile(r"\b(?:my|our)\b")
 _PASS = re.compile(rf"^(?:let|allow|do not move)(?: for)? (?P<time>{DURATION})(?: (?:to )?(?:pass|go by|elapse))?$")
 _STAY = re.compile(
-    rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
+    rf"^(?:{TO_GO} (?P<to>.+?)(?:,| and| then)* "
     rf"(?=stay|remain|wait|stand))?(?:stay|remain|wait|stand|stop|hang "
     rf"(?:around|about|out)|rest|park|be)"
     rf"(?: (?:there|here))?(?P<place>(?: over)? (?:in|at|by|near|next to|beside) .+?)? for "
@@ -52,8 +60,8 @@ def in_time(text: str) -> str:
         return f"wait {_plain(found['time'])}"
     for pattern in (_FIRST, _JUST, _LAST):
         if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
-            time = found["time"] or found.groupdict().get("later") or ""
-            return f"wait {_plain(time)} . {found['rest']}"
+            time = next(filter(None, map(found.groupdict().get, ("time", "later", "passed"))))
+            return f"wait {_plain(time)} . {_TELL.sub('say ', found['rest'])}"
     return text
 
 

@@ -36,6 +36,32 @@ from evaluation.everyday.understanding import understand
         ("-", "I've left my phone charger somewhere in the bedroom, would you look for it?", "find(phone charger)"),
         ("-", "Take the apple off the kitchen table and put it on the counter for me.", "put(apple, counter)"),
         ("failed:find my glasses", "They may be in the bedroom, please look there.", "goto(bedroom); find(glasses)"),
+        # Going somewhere, with something in the hand or to tell what is there.
+        ("-", "Pick up the red mug and drive to the kitchen with it.", "take(red mug); goto(kitchen)"),
+        ("-", "Pick up the red can, take it into the study and stay there holding it.", "take(red can); goto(study)"),
+        ("-", "Drive to the counter and tell me what's on it.", "answer(mug, can, bowl, bottle)"),
+        ("-", "Where'd the white bottle end up?", "answer(dresser)"),
+        ("-", "Which room has the dresser in it?", "answer(bedroom)"),
+        ("-", "There's a mug on the desk, isn't there? What colour is it?", "answer(white)"),
+        # At what time.
+        ("-", "When forty-five minutes are up, sing out that the cake's done.", "wait(2700); say(the cake's done)"),
+        ("-", "One minute from now bring me the apple, not sooner.", "wait(60); fetch(apple)"),
+        ("-", "In a quarter of an hour give me a shout that the pie's done.", "wait(900); say(the pie is done)"),
+        # All but one, and one for the other.
+        (
+            "-",
+            "Except for the box, everything on the coffee table goes to the kitchen counter.",
+            "put(red mug, counter) & put(green can, counter)",
+        ),
+        (
+            "-",
+            "Red mug and white mug, let them trade places.",
+            "put(red mug, desk) & put(white mug, living table)",
+        ),
+        # A short `is`, `will` or `would` behind any noun.
+        ("-", "the red mug's to go on the desk", "put(red mug, desk)"),
+        ("-", "Mum'd like the red mug.", "fetch(red mug)"),
+        ("last:put the white box on the bookshelf", "It was fine where it was.", "put(white box, living table)"),
         # Where, more closely.
         ("-", "Move the apple to the counter, next to the bowl.", "put(apple, counter near yellow bowl)"),
         (
