@@ -39,7 +39,7 @@ class WorldObject(Message):
     and how much of it has each colour, each adding up to 1; empty where nothing was measured. `measured`: `size` was
     measured and not looked up in the household; `spread`: standard deviation [m] of its extents and position.
     `points`: what was seen of its surface, int16 (n, 3) [mm], little endian, in map axes from `position`.
-    `top`: what its upper end is, as it rests.
+    `top`: what its upper end is, of what lies the one that is to be above.
     """
 
     label: str

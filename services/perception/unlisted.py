@@ -29,6 +29,9 @@ MOSTLY = 0.5
 """Least share of the kinds that lie as long as it is in what it may be."""
 VOXEL = 0.005
 """Side [m] of the cells in which points are averaged. Chosen: a third of a finger pad."""
+DIM, DARKEST = 60.0, 12.0
+"""Levels (of 255) of the brightest channel below which depth grows noisier, with the square root of how little light
+comes back, and below which there is none."""
 MOST_POINTS = 600
 """Points of an object that are told to others: one for each cell of the visible side of something of 25 by 6 cm. With a
 third of them a stem, a drip pan and the gap of a handle all looked alike to the hand."""
@@ -119,9 +122,10 @@ def end_above(view: View, segment: Segment, middle: Point, radius: float, height
 
 
 def noise_of(view: View, segment: Segment) -> float:
-    """Standard deviation [m] of a segment's points along the line of sight."""
+    """Standard deviation [m] of a segment's points along the line of sight; what is dark gives little light."""
     far = float(np.linalg.norm(segment.points.mean(axis=0) - view.position))
-    return DEPTH_NOISE * far * far
+    level = float(np.median(view.rgb[segment.rows, segment.columns].max(axis=1)))
+    return DEPTH_NOISE * far * far * math.sqrt(DIM / min(DIM, max(DARKEST, level)))
 
 
 def measures_of(m: Measurement, error: float) -> Measures:

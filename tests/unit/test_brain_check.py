@@ -73,18 +73,22 @@ def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
 
 
 @pytest.mark.parametrize(
-    ("asked", "lay", "top", "fault"),
+    ("asked", "tilt", "before", "top", "fault"),
     [
-        ("black mug", True, "open", ""),
-        ("black mug", True, "closed", "TOPPLED"),
-        ("black mug", True, "", "UNTOLD"),
-        ("black mug", False, "", ""),
-        ("black bottle", True, "", ""),
+        ("black mug", LYING, "", "open", ""),
+        ("black mug", LYING, "", "closed", "TOPPLED"),
+        ("black mug", LYING, "open", "closed", "TOPPLED"),
+        ("black mug", LYING, "", "", "UNTOLD"),
+        ("black mug", LYING, "open", "", ""),
+        ("black mug", 0.0, "", "", ""),
+        ("black bottle", LYING, "", "", ""),
     ],
 )
-def test_a_vessel_that_lay_stands_when_it_is_seen_to_be_open_above(asked: str, lay: bool, top: Any, fault: str) -> None:
+def test_a_vessel_that_lay_stands_when_it_is_seen_to_be_open_above(
+    asked: str, tilt: float, before: m.End, top: m.End, fault: str
+) -> None:
     unlisted = msgspec.structs.replace(SCENE, things=())
-    rest = Rest(kind_meant(asked, unlisted), lay=lay)
+    rest = rested(pose(label=asked, tilt=tilt), asked, unlisted, None, "round", before)
     assert judge_placement(pose(label=asked), asked, "delivery tray", unlisted, rest=rest, top=top).fault == fault
 
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.floor_plan import Receptacle
+from common.floor_plan import Box, Receptacle
 from common.geometry import Array
 from common.scene import load_scene
 from services.perception.segments import dark, segmentation
 from services.perception.segments.outlined import on_surface, with_parts
-from services.perception.segments.segment import Segment
+from services.perception.segments.segment import Segment, Surface
 from services.perception.shapes import silhouette
 from services.perception.shapes.measurement import LEVEL, Measurement
 from services.perception.unlisted import measured
@@ -175,3 +175,13 @@ def test_what_has_no_depth_at_all_is_of_the_surface_that_it_stands_on(front: flo
     on_it = [s for s in segmentation.segments(seen(box(0.13, 0.06, 0.17, 0.6)), plan, 3.5) if s.surface.name]
     assert [s.surface.name for s in on_it] == (["table"] if front < AT[0] else [])
     assert all(not len(s.points) for s in on_it)
+
+
+@pytest.mark.parametrize("chair", [False, True])
+def test_what_has_no_depth_at_all_is_found_on_the_floor_and_is_no_part_of_furniture(chair: bool) -> None:
+    view = seen(box(0.13, 0.06, 0.17, 0.6))
+    low = View(view.rgb, view.depth, view.focal, view.middle, EYE - (0.0, 0.0, FLOOR), view.rotation)
+    furniture = (Box("chair", (AT[0], AT[1], 0.4), (0.4, 0.4, 0.8)),) if chair else ()
+    plan = msgspec.structs.replace(load_scene("apartment"), receptacles=(), furniture=furniture, walls=())
+    found = segmentation.segments(low, plan, 3.5)
+    assert [s.surface for s in found] == ([] if chair else [Surface("", 0.0)])

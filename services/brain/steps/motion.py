@@ -114,7 +114,9 @@ class Manipulate(Move):
         # What has fallen once stays in mind as it stood before.
         delivery.around = {**standing(ctx.objects, ctx.robot_pose, ctx.now), **delivery.around}
         delivery.rests = delivery.rests | {
-            item: rested(pose, item, ctx.io.household, delivery.rests.get(item), known.shape if known else "")
+            item: rested(
+                pose, item, ctx.io.household, delivery.rests.get(item), *((known.shape, known.top) if known else ())
+            )
             for item, pose in ctx.mission.search.found.items()
             for known in (ctx.known_object(pose.label),)
         }

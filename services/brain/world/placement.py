@@ -54,7 +54,7 @@ class Rest(msgspec.Struct, frozen=True):
 
     `asked`: the kind that it was asked for as, `taken`: the one that it was taken for; "" for none. `stood`: its height
     [m] as it stood, 0 if it lay, `shape` how it was measured; `lay`: it has lain at some time, and may have been stood
-    on its head since.
+    on its head since; `opening`: as it lay its opening was seen, so that the hand knew which end belongs above.
     """
 
     asked: str = ""
@@ -62,18 +62,25 @@ class Rest(msgspec.Struct, frozen=True):
     stood: float = 0.0
     lay: bool = False
     shape: ShapeFamily = ""
+    opening: bool = False
 
 
 def rested(
-    pose: ObjectPose, item: str, household: Household, before: Rest | None, shape: ShapeFamily = ""
-) -> Rest:  # fmt: skip
-    """What is known of the rest of an object that was asked for as `item` and is seen at `pose`, measured as `shape`,
-    before a grasp."""
+    pose: ObjectPose,
+    item: str,
+    household: Household,
+    before: Rest | None,
+    shape: ShapeFamily = "",
+    top: End = "",
+) -> Rest:
+    """What is known of the rest of an object that was asked for as `item` and is seen at `pose`, measured as `shape`
+    with that upper end, before a grasp."""
     asked, taken = kind_meant(item, household), kind_meant(pose.label, household)
     lay = _over(asked or taken, pose)
+    opening = lay and top == "open"
     if before is not None:
-        return msgspec.structs.replace(before, lay=before.lay or lay)
-    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay, shape)
+        return msgspec.structs.replace(before, lay=before.lay or lay, opening=opening)
+    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay, shape, opening)
 
 
 def judge_placement(
@@ -117,7 +124,7 @@ def judge_placement(
     if stands and over and not in_bin:
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
-    untold = not top if vessel else alike and any(not kind.ends_alike for kind in stands)
+    untold = not top and not rest.opening if vessel else alike and any(not kind.ends_alike for kind in stands)
     if lay and untold and not in_bin:
         words = f"I cannot tell whether the {label} {where} stands on its head"
         return Finding("UNTOLD", words, measured)

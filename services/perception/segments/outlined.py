@@ -1,13 +1,14 @@
 """Objects on a surface of which the picture shows the outline and little else: dark ones that get no depth. Pure."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.geometry import Array, Mask
+from common.geometry import Array, Mask, Rectangle
 from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels, guessed
 from services.perception.segments.segment import NEARER, RIM, Segment, Surface
 from services.perception.shapes import silhouette
@@ -30,8 +31,11 @@ SEAM = 2
 """Width [pixels] of the line between two parts that is of neither."""
 
 
-def on_surface(view: View, name: str, plane: Array, over: Cloud, own: Mask, dark: Blobs) -> list[Segment]:
-    """The objects on a surface, z = plane (3,) @ (x, y, 1), whose outline alone is seen. `over`: the pixels over it."""
+def on_surface(
+    view: View, name: str, plane: Array, over: Cloud, own: Mask, dark: Blobs, taken: Sequence[Rectangle] = ()
+) -> list[Segment]:
+    """The objects on a surface, z = plane (3,) @ (x, y, 1), whose outline alone is seen. `over`: the pixels over it;
+    `taken`: where something else stands, with parts as dark."""
     if not len(over.pixels):
         return []
     low = np.array([over.x.min(), over.y.min()]) - OWN
@@ -43,7 +47,9 @@ def on_surface(view: View, name: str, plane: Array, over: Cloud, own: Mask, dark
             continue
         floor = float(plane @ (at[0], at[1], 1.0))
         at = silhouette.foot(view, pixels, floor)
-        if at is None or not _is_object(view, pixels, at, plane, own):
+        if at is None or any(box.contains(float(at[0]), float(at[1])) for box in taken):
+            continue
+        if not _is_object(view, pixels, at, plane, own):
             continue
         inside = np.isin(over.pixels, pixels[0] * view.shape[1] + pixels[1])
         points = np.stack([over.x[inside], over.y[inside], over.z[inside]], axis=1).astype(np.float64)

@@ -81,8 +81,8 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
         found += _on(view, surface, over.outside(on_it), near, own, dark)
-    for surface, over in _above_floor(view, usable):
-        found += _on(view, surface, over.outside(near.boxes), near, own, dark)
+    for surface, over, ground in _above_floor(view, usable):
+        found += _on(view, surface, over.outside(near.boxes), near, own, dark, ground=ground)
     return found
 
 
@@ -113,14 +113,14 @@ def _stands_on(segment: Segment, r: Receptacle) -> bool:
     return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
 
-def _above_floor(view: View, usable: Mask) -> list[tuple[Surface, Cloud]]:
-    """The floor and the rugs on it, and the usable pixels that stand up from each by more than noise."""
+def _above_floor(view: View, usable: Mask) -> list[tuple[Surface, Cloud, Cloud]]:
+    """The floor and the rugs on it, the usable pixels that stand up from each by more than noise, and all over it."""
     found = []
     for height, cloud in layers(
         _between(view, usable & (view.depth < FLOOR_RANGE), -SEARCH, MAX_HEIGHT, view.everywhere)
     ):
         noise = DEVIATIONS * DEPTH_NOISE * float(view.position[2]) * view.depth.ravel()[cloud.pixels]
-        found.append((Surface("", height), cloud.kept(cloud.z > height + np.maximum(noise, CLEARANCE))))
+        found.append((Surface("", height), cloud.kept(cloud.z > height + np.maximum(noise, CLEARANCE)), cloud))
     return found
 
 
@@ -145,14 +145,16 @@ def _on(
     own: Mask,
     dark: Blobs | None,
     beyond: Cloud | None = None,
+    ground: Cloud | None = None,
 ) -> list[Segment]:
     """Pieces above one surface, whose plane is measured where enough of it is visible; of the pixels `beyond` its edges
-    those above its front."""
+    those above its front. `ground`: all pixels over it, where `cloud` is what stands up from it."""
     plane, least, rough = _plane(view, cloud, expected)
     if beyond is not None:
         front = plane[0] * beyond.x + plane[1] * beyond.y + plane[2]
         cloud = cloud.joined(beyond.kept(beyond.z > front + CLEARANCE))
-    outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
+    taken = [] if ground is None else near.boxes
+    outlined = on_surface(view, expected.name, plane, ground or cloud, own, dark, taken) if dark else []
     by_walls = np.zeros(view.shape, bool)
     by_walls.ravel()[cloud.pixels] = True
     cloud = cloud.outside(near.walls)

@@ -9,11 +9,12 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import Rectangle, yaw_quat
 from common.household import Household
-from common.messages import WorldObject
+from common.messages import End, WorldObject
 from services.perception.detection import Detection
+from services.perception.shapes.measurement import LEVEL as LYING
 from services.perception.tracking.association import moved_here, overlap, separation, should_show
 from services.perception.tracking.descriptor import shares
-from services.perception.tracking.track import SURE, Track, aim, see, several, shown
+from services.perception.tracking.track import OPENING, SURE, Track, aim, see, several, shown
 from services.perception.views.view import View
 
 CERTAIN = 0.8
@@ -227,6 +228,11 @@ def _labelled(tracks: Sequence[Track]) -> list[tuple[Track, str]]:
     return found
 
 
+def _top(t: Track) -> End:
+    """What the upper end is; of what lies, if it was seen which of them that is."""
+    return "open" if t.tilt == LYING and t.yaw_seen and t.looks.opening >= OPENING else t.looks.top
+
+
 def _as_object(t: Track, label: str) -> WorldObject:
     kind, colour = t.name[1:] if t.known else t.looks.named
     return WorldObject(
@@ -235,5 +241,5 @@ def _as_object(t: Track, label: str) -> WorldObject:
         colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
         kind_shares={} if t.known else shares(t.looks.kinds), colour_shares={} if t.known else shares(t.looks.colours),
         measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(),
-        top=t.looks.top,
+        top=_top(t),
     )  # fmt: skip
