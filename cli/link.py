@@ -77,7 +77,7 @@ class Link:
         Raises:
             CliError: `who` has not answered within `seconds`.
         """
-        watch = Watch(self, answers)
+        watch = Subscription(self, answers)
         self.send(topic, request)
         answer = watch.until(lambda one: one.goal_id == request.id, seconds)  # type: ignore[attr-defined]
         if answer is None:
@@ -90,7 +90,7 @@ class Link:
         Raises:
             CliError: it has not come within `seconds`.
         """
-        watch, wanted = Watch(self, topics.PICTURES[camera]), fresh_id()
+        watch, wanted = Subscription(self, topics.PICTURES[camera]), fresh_id()
         self.send(topics.CAMERA_REQUEST, m.CameraRequest(id=wanted, camera=camera, width=width, height=height))
         seen = watch.until(lambda one: one.id == wanted, seconds)
         if seen is None:
@@ -110,7 +110,7 @@ class Link:
         return msgspec.json.decode(next(iter(answers.values())))
 
 
-class Watch(Generic[M]):
+class Subscription(Generic[M]):
     """Subscription to one topic; a latched one yields its present value first, and again after an outage."""
 
     REFRESH = 2.0

@@ -3,7 +3,7 @@
 import argparse
 
 from cli.errors import CliError
-from cli.link import Link, Watch, linked, robot_command
+from cli.link import Link, Subscription, linked, robot_command
 from common import messages as m
 from common import topics
 
@@ -24,7 +24,7 @@ def brake(link: Link, reason: str, source: str) -> None:
     Raises:
         CliError: it does not in time.
     """
-    watch = Watch(link, topics.SIM_STATUS)
+    watch = Subscription(link, topics.SIM_STATUS)
     link.send(topics.ROBOT_STOP, m.RobotStop(reason=reason, source=source))
     _confirm(watch, "stopped")
 
@@ -34,7 +34,7 @@ def resume(args: argparse.Namespace) -> int:
         before = link.latest(topics.BRAIN_STATE)
         last = before.last if before is not None else None
         left = last is not None and last.resumable
-        watch, states = Watch(link, topics.SIM_STATUS), Watch(link, topics.BRAIN_STATE)
+        watch, states = Subscription(link, topics.SIM_STATUS), Subscription(link, topics.BRAIN_STATE)
         link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot", go_on=not args.cancel))
         _confirm(watch, "running")
         begun = states.until(lambda s: bool(s.mission_id), CONFIRM) if left and not args.cancel else None
@@ -43,7 +43,7 @@ def resume(args: argparse.Namespace) -> int:
     return 0
 
 
-def _confirm(watch: "Watch[m.SimStatus]", state: str) -> None:
+def _confirm(watch: "Subscription[m.SimStatus]", state: str) -> None:
     if watch.until(lambda status: status.state == state, CONFIRM) is None:
         raise CliError(f"the simulation did not confirm within {CONFIRM:.0f} s that it is {state}; see `tidybot ps`")
 

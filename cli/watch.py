@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from cli.link import Link, Watch, linked, robot_command
+from cli.link import Link, Subscription, linked, robot_command
 from common import messages as m
 from common import topics
 from common.mission_log.states import limb_words, under_way
@@ -40,8 +40,8 @@ class Picture:
 
     def __init__(self, link: Link) -> None:
         self._link = link
-        self._watches: dict[str, Watch[Any]] = {
-            t.key: Watch(link, t)
+        self._watches: dict[str, Subscription[Any]] = {
+            t.key: Subscription(link, t)
             for t in (
                 topics.BRAIN_STATE, topics.BRAIN_TREE, topics.ACTION_PLAN, topics.SIM_STATUS, topics.SPEECH_STATUS,
                 topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_FEEDBACK,

@@ -12,7 +12,7 @@ from common.config import Config
 from evaluation.case import Case, Line, Observed
 from evaluation.faults.reports import FaultReport
 from evaluation.person.dialogue import Dialogue, Onlooker
-from evaluation.shortest import FloorPlan
+from evaluation.shortest import ShortestPaths
 from evaluation.watch import observe
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
@@ -80,7 +80,7 @@ class Examiner:
         """The shortest way [m] of a base that makes all deliveries; 0 where there is none."""
         wants = self._case.wants
         deliveries = [(sample.things[w.thing].position[:2], sample.things[w.thing].on, w.goals[0]) for w in wants]
-        found = FloorPlan(self._io.world).mission(sample.base, deliveries)
+        found = ShortestPaths(self._io.world).mission(sample.base, deliveries)
         return round(found, 3) if np.isfinite(found) else 0.0
 
     # --- the robot's words and states

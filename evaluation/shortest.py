@@ -19,7 +19,7 @@ REACH = 2
 """Rows and columns of the longest step of a way [cells]: 16 directions."""
 
 
-class FloorPlan:
+class ShortestPaths:
     """Lengths of shortest paths for the base as a disc; 16 directions, then pulled tight."""
 
     def __init__(self, scene: Scene) -> None:

@@ -12,7 +12,7 @@ import msgspec
 from common.kinds import kind_of
 from common.scene import Scene
 from judge.evidence import Sample
-from judge.track import MOVED, TOPPLED, Thing
+from judge.track import MOVED, TOPPLED, ThingState
 from judge.words import plain
 
 Kind = Literal[
@@ -188,7 +188,7 @@ class Watcher:
                 return ""
 
 
-def _away(now: Thing, kind: str, name: str, surface: str) -> str:
+def _away(now: ThingState, kind: str, name: str, surface: str) -> str:
     """Why an object is not on its surface, let go and, if its kind has an upright, standing; "" if it is."""
     if now.held:
         return f"the {name} is in the hand"

@@ -10,7 +10,7 @@ import msgspec
 
 from common import messages as m
 from judge.contacts import ContactBook
-from judge.track import Thing, Track
+from judge.track import ThingState, Track
 
 STILL = 0.005
 """Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
@@ -26,7 +26,7 @@ class Sample(msgspec.Struct, frozen=True):
 
     t: float
     base: tuple[float, float, float]
-    things: dict[str, Thing]
+    things: dict[str, ThingState]
     opening: float = 0.0
 
 
@@ -72,7 +72,7 @@ class Evidence(msgspec.Struct):
     touches: list[str] = []
 
 
-class Recorder:
+class EvidenceRecorder:
     """Collects samples of the world in the order of time and derives the evidence from them."""
 
     def __init__(self, kinds: Mapping[str, str], bins: frozenset[str] = frozenset()) -> None:

@@ -17,9 +17,9 @@ from common.scene import ObjectSpec, Scene, body_name
 from common.support import support
 from judge.claims import Claim, ClaimListener, Statement
 from judge.effects import Shown, Watcher
-from judge.evidence import Evidence, Recorder, Sample
+from judge.evidence import Evidence, EvidenceRecorder, Sample
 from judge.goal import Goal, shortfall
-from judge.track import Thing
+from judge.track import ThingState
 
 WATCH = 10.0
 """Robot time [s] that physics is watched on after a mission: what was put down badly falls meanwhile."""
@@ -34,7 +34,7 @@ class Observer:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         bins = frozenset(r.name for r in scene.receptacles if r.depth)
-        self._recorder = Recorder({o.name: o.kind for o in scene.objects}, bins)
+        self._recorder = EvidenceRecorder({o.name: o.kind for o in scene.objects}, bins)
         self._watcher = Watcher(scene)
         self._replica: Replica | None = None
         self._listener = ClaimListener()
@@ -149,7 +149,7 @@ class Replica:
         starts = [model.joint(body_name(o)).qposadr[0] for o in self._specs]
         self._poses_at = np.array(starts, dtype=int).reshape(-1, 1) + np.arange(7)
         self._poses = np.full(self._poses_at.shape, np.nan)
-        self._things: dict[str, Thing] = {}
+        self._things: dict[str, ThingState] = {}
 
     def sample(self, state: m.SimState) -> Sample:
         """Poses and contacts of a published state.
@@ -181,7 +181,7 @@ class Replica:
             x, y, z = (float(v) for v in data.xpos[body])
             up = data.xmat[body].reshape(3, 3)[2]
             held = all(robot[name] & side for side in self._pads) and name not in other
-            things[name] = Thing(
+            things[name] = ThingState(
                 position=(x, y, z),
                 tilt=math.acos(max(-1.0, min(1.0, float(up[2])))),
                 on="" if held else support(self.scene, x, y, lowest(model, data, body)),

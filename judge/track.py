@@ -20,7 +20,7 @@ FALL = 1.0
 """Time [s] that a thing let go above a bin may take to lie in it: a free fall of 1 s is 4.9 m."""
 
 
-class Thing(msgspec.Struct, frozen=True):
+class ThingState(msgspec.Struct, frozen=True):
     """One object at one moment: `tilt` [rad] of its own z axis to the vertical, `on` what it rests on."""
 
     position: tuple[float, float, float]
@@ -37,8 +37,8 @@ class Track(msgspec.Struct):
 
     kind: str
     bins: frozenset[str]
-    baseline: Thing
-    last: Thing
+    baseline: ThingState
+    last: ThingState
     lifted: bool = False
     carried: float = 0.0
     dropped: bool = False
@@ -52,7 +52,7 @@ class Track(msgspec.Struct):
         """Take the last sample as the baseline: what has happened so far was the world settling."""
         self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
 
-    def add(self, now: Thing, t: float, driven: float) -> None:
+    def add(self, now: ThingState, t: float, driven: float) -> None:
         """Take the object at time `t` [s]; the base has driven `driven` [m] since the sample before."""
         before, self.last = self.last, now
         if now is before and not now.held:
@@ -69,7 +69,7 @@ class Track(msgspec.Struct):
         if self.dropped and now.on in self.bins and t - self.let_go < FALL:
             self.dropped, self.drops = False, self.drops - 1
 
-    def _fell(self, before: Thing, t: float) -> bool:
+    def _fell(self, before: ThingState, t: float) -> bool:
         """True for an object on the floor, where it did not stand, or fallen out of the hand onto nothing."""
         now, lost = self.last, self.lost_at
         # A hand that goes down with it is lower by itself one sample later: only what is still out of it has fallen.

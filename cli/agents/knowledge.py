@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from cli.errors import CliError
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from cli.missions.explain import mission_record, told
 from cli.missions.say import status_record
 from cli.payload import fields
@@ -89,7 +89,7 @@ def map_picture(link: Link) -> bytes:
     Raises:
         CliError: navigation does not publish one, or what it publishes is none.
     """
-    seen = Watch(link, topics.COSTMAP).next(MAP_LIMIT)
+    seen = Subscription(link, topics.COSTMAP).next(MAP_LIMIT)
     if seen is None:
         raise CliError("navigation publishes no costmap; see `tidybot ps`")
     try:

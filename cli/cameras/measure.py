@@ -8,7 +8,7 @@ import numpy as np
 from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import overlooks, poses
 from cli.cameras.shot import Mount, Shot
-from cli.cameras.surfaces import Arm, Room
+from cli.cameras.surfaces import Arm, SeenRoom
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
 from cli.link import Link
@@ -129,7 +129,7 @@ def _measure(photographer: Photographer, driver: Driver, arm: Arm, count: int) -
         shots.append(photographer.shot("head"))
         print(f"head: picture {number} of {count}", flush=True)
     mounts = {"head": fit(arm, shots)}
-    room = Room([shot.image for shot in shots], mounts["head"])
+    room = SeenRoom([shot.image for shot in shots], mounts["head"])
     shots = []
     for number, _ in enumerate(photographer.visit(overlooks(arm, first["head"], first["wrist"], room, count)), 1):
         shots.append(photographer.shot("wrist"))

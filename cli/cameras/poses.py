@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from cli.cameras.mounts import LEAST, Unseen
 from cli.cameras.shot import STEP
-from cli.cameras.surfaces import Arm, Room
+from cli.cameras.surfaces import Arm, SeenRoom
 from common.geometry import Array, quat_matrix
 from common.messages import Rgbd
 from common.robot.pictures import depths, rays
@@ -97,7 +97,7 @@ def _free(arm: Arm, space: FreeSpace, joints: Array) -> bool:
     return arm.reach()[0] >= LOWEST and not arm.collides() and space.holds()
 
 
-def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: Room, count: int) -> list[Array]:
+def overlooks(arm: Arm, before: Rgbd, image: Rgbd, room: SeenRoom, count: int) -> list[Array]:
     """Joint angles (7,) [rad] in which the camera on the hand looks from different sides at what `room` shows.
 
     `image`: its picture from the carry pose, `before`: the other camera's. The arm keeps the limits of `poses`.

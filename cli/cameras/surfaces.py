@@ -77,7 +77,7 @@ class Arm(RobotKinematics):
         return origin + directions * np.maximum(distances, 0.0)[:, None], normals, hit
 
 
-class Room:
+class SeenRoom:
     """The room as measured by another camera that does not move, its own `mount` taken into account.
 
     Of `images` the farthest depth counts: the arm was in front of something else in each.

@@ -10,7 +10,7 @@ from rich.live import Live
 from rich.text import Text
 
 from cli.errors import CliError, port_number
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import free_port, port_is_free
 from cli.processes.supervision import Supervision, run_dir
@@ -124,7 +124,7 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
     Raises:
         CliError: a process ended, or nothing was saved.
     """
-    statuses, grids = Watch(link, topics.MAPPING_STATUS), Watch(link, topics.MAP_GRID)
+    statuses, grids = Subscription(link, topics.MAPPING_STATUS), Subscription(link, topics.MAP_GRID)
     status = m.MappingStatus(t=0.0, phase="idle")
     began, drawn = monotonic(), -math.inf
     console = Console(highlight=False)
@@ -155,7 +155,7 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
     return status
 
 
-def _save_now(link: Link, statuses: Watch[m.MappingStatus], status: m.MappingStatus) -> m.MappingStatus:
+def _save_now(link: Link, statuses: Subscription[m.MappingStatus], status: m.MappingStatus) -> m.MappingStatus:
     """Have the map saved as it is."""
     link.send(topics.MAPPING_GOAL, m.MappingGoal(goal="save", id="ctrl-c"))
     saved = statuses.until(lambda now: now.saves > status.saves, SAVE_LIMIT)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from cli.errors import CliError
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
@@ -54,7 +54,7 @@ class Player:
             CliError: robot time stands still.
         """
         session, token = self._link.session, None
-        clock = Watch(self._link, topics.SIM_CLOCK)
+        clock = Subscription(self._link, topics.SIM_CLOCK)
         out = session.declare_publisher(topics.AUDIO_PCM.key, encoding=codec.encoding_of(topics.AUDIO_PCM))
         heard, sent, start = monotonic(), 0, -1
         try:

@@ -4,7 +4,7 @@ import uuid
 from collections.abc import Callable
 
 from cli.errors import CliError
-from cli.link import FIRST, Link, Watch
+from cli.link import FIRST, Link, Subscription
 from cli.missions.audio import Player
 from common import messages as m
 from common import topics
@@ -23,7 +23,7 @@ class Conversation:
 
     def __init__(self, link: Link, show: Show = lambda state: None) -> None:
         self._link, self._show = link, show
-        self._watch = Watch(link, topics.BRAIN_STATE)
+        self._watch = Subscription(link, topics.BRAIN_STATE)
         self.state = first = self._watch.first()
         self._before = {first.mission_id, first.last.id if first.last else ""}
         self.mission_id = ""
@@ -127,7 +127,7 @@ class Answer:
 
     def __init__(self, link: Link, talk: Conversation) -> None:
         self._talk, self._under_way = talk, talk.state.mission_id
-        self._goals = Watch(link, topics.SPEECH_GOAL)
+        self._goals = Subscription(link, topics.SPEECH_GOAL)
         self._goals.next(FIRST)
         self.text = ""
 
@@ -152,7 +152,7 @@ def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str
     Raises:
         CliError: the speech service is not there, or the robot stays busy.
     """
-    heard, status = Watch(link, topics.SPEECH_RESULT), Watch(link, topics.SPEECH_STATUS)
+    heard, status = Subscription(link, topics.SPEECH_RESULT), Subscription(link, topics.SPEECH_STATUS)
     heard.next(0.3)  # the result of an earlier utterance
     if status.next(1.0) is None and "speech" not in link.alive():
         raise CliError("the speech service is not there; see `tidybot ps`")

@@ -8,7 +8,7 @@ import uuid
 from pathlib import Path
 
 from cli.errors import CliError, near, port_number
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from cli.missions.audio import Player, recorded
 from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.missions.verdict import Verdict, Witness
@@ -74,7 +74,7 @@ class Demo:
 
     def __init__(self, link: Link, screen: Screen, scene: Scene, thing: str) -> None:
         self._link, self._screen = link, screen
-        self._speech = Watch(link, topics.SPEECH_STATUS)
+        self._speech = Subscription(link, topics.SPEECH_STATUS)
         self._answered = ""
         self._witness = Witness(link, scene, thing)
 

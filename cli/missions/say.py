@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import get_args
 
 from cli.errors import CliError, checked
-from cli.link import Watch, linked, robot_command
+from cli.link import Subscription, linked, robot_command
 from cli.missions.audio import recorded
 from cli.missions.conversation import ACCEPT, INSTEAD, KEPT, Answer, Conversation, Show, speak_into, typed
 from cli.output import NewStates, show
@@ -92,7 +92,7 @@ def status(args: argparse.Namespace) -> int:
         checked(wanted, (*get_args(m.BrainStateName), "EXECUTING", "SUCCESS"), "state")
     reached = not wanted
     with linked(args) as link:
-        watch, system = Watch(link, topics.BRAIN_STATE), Watch(link, topics.SYSTEM_STATUS)
+        watch, system = Subscription(link, topics.BRAIN_STATE), Subscription(link, topics.SYSTEM_STATUS)
         state = watch.first()
         end = monotonic() + args.timeout
         while wanted and monotonic() < end:

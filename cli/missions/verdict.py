@@ -2,7 +2,7 @@
 
 import msgspec
 
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from common import topics
 from common.scene import Scene
 from common.time.clock import monotonic
@@ -33,12 +33,12 @@ class Witness:
         self._goal = Goal((Want(thing, (scene.delivery,)),))
         self._thing = thing
         self._observer = Observer(scene)
-        self._model = Watch(link, topics.SIM_MODEL)
-        self._state = Watch(link, topics.SIM_STATE)
-        self._contacts = Watch(link, topics.SIM_CONTACTS)
-        self._brain = Watch(link, topics.BRAIN_STATE)
-        self._status = Watch(link, topics.SYSTEM_STATUS)
-        self._speech = Watch(link, topics.SPEECH_STATUS)
+        self._model = Subscription(link, topics.SIM_MODEL)
+        self._state = Subscription(link, topics.SIM_STATE)
+        self._contacts = Subscription(link, topics.SIM_CONTACTS)
+        self._brain = Subscription(link, topics.BRAIN_STATE)
+        self._status = Subscription(link, topics.SYSTEM_STATUS)
+        self._speech = Subscription(link, topics.SPEECH_STATUS)
         self.now = 0.0
 
     def begin(self) -> None:

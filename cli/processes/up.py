@@ -10,7 +10,7 @@ from types import FrameType
 from typing import TypeVar
 
 from cli.errors import CliError, port_number
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from cli.output import NewStates
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import port_is_free
@@ -170,7 +170,7 @@ def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> 
         contextlib.suppress(NoRouter),
         open_session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session,
     ):
-        watch = Watch(Link(session, plan.connect), topics.BRAIN_STATE)
+        watch = Subscription(Link(session, plan.connect), topics.BRAIN_STATE)
         while not supervision.died():
             state = watch.next(0.5)
             if state is not None and (line := told.line(state)):

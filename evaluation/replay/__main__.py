@@ -19,7 +19,7 @@ from common.recording import Recording, RecordingError, Row
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
 from evaluation.registry import service_class
-from evaluation.replay.comparison import TOLERANCE, Timed, Verdict, compare
+from evaluation.replay.comparison import TOLERANCE, Comparison, Timed, compare
 from evaluation.replay.player import Player
 
 SLACK = 0.2
@@ -67,7 +67,7 @@ def _seed(run: dict[str, str], default: int) -> int:
     return int(run.get("seed", default))
 
 
-def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], slack: float) -> list[Verdict]:
+def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], slack: float) -> list[Comparison]:
     """One verdict for every topic that the service writes."""
     recorded = _by_key(row for row in player.recording.rows if player.covers(row))
     replayed = _by_key(Row(key, payload, t, wall=0.0) for t, key, payload in outputs)

@@ -17,7 +17,7 @@ TOLERANCE = 1e-9
 Timed = tuple[float, m.Message]
 
 
-class Verdict(msgspec.Struct):
+class Comparison(msgspec.Struct):
     """One topic: how many were recorded, how many came out of the replay, and the first difference ("" for none)."""
 
     key: str
@@ -30,13 +30,13 @@ class Verdict(msgspec.Struct):
         return not self.difference
 
 
-def compare(topic: Topic[Any], recorded: Sequence[Timed], replayed: Sequence[Timed], slack: float) -> Verdict:
+def compare(topic: Topic[Any], recorded: Sequence[Timed], replayed: Sequence[Timed], slack: float) -> Comparison:
     """Judge one topic; `slack` is for times [s].
 
     Events must come in the same order. Of a stream, with slack, every replayed value must be found among the recorded
     ones of about that time, because a stream may skip values.
     """
-    verdict = Verdict(topic.key, len(recorded), len(replayed))
+    verdict = Comparison(topic.key, len(recorded), len(replayed))
     if topic.keep == "latest" and slack > 0:
         verdict.difference = _stray(recorded, replayed, slack)
     else:

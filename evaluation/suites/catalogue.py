@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.scene import Form, ObjectSpec, Pattern
-from evaluation.suites.drawn import FRUIT, MEASURES, Measures, Range, colour
+from evaluation.suites.drawn import FRUIT, MEASURES, Range, SizeRanges, colour
 
-PACKED: dict[str, Measures] = {
+PACKED: dict[str, SizeRanges] = {
     **MEASURES,
-    "cup": Measures((0.062, 0.078), height=(0.075, 0.105), density=(250, 450)),
-    "jar": Measures((0.058, 0.076), height=(0.080, 0.130), density=(500, 900)),
-    "carton": Measures((0.055, 0.072), height=(0.130, 0.200), density=(400, 950)),
-    "book": Measures((0.110, 0.150), (0.018, 0.040), (0.160, 0.220), density=(500, 800)),
-    "plate": Measures((0.160, 0.210), height=(0.018, 0.028), density=(350, 600)),
-    "orange": Measures((0.062, 0.078), density=FRUIT),
+    "cup": SizeRanges((0.062, 0.078), height=(0.075, 0.105), density=(250, 450)),
+    "jar": SizeRanges((0.058, 0.076), height=(0.080, 0.130), density=(500, 900)),
+    "carton": SizeRanges((0.055, 0.072), height=(0.130, 0.200), density=(400, 950)),
+    "book": SizeRanges((0.110, 0.150), (0.018, 0.040), (0.160, 0.220), density=(500, 800)),
+    "plate": SizeRanges((0.160, 0.210), height=(0.018, 0.028), density=(350, 600)),
+    "orange": SizeRanges((0.062, 0.078), density=FRUIT),
 }
 """Sizes of the kinds, as `evaluation.suites.drawn` has them, and of more."""
 FORMS: dict[Form, tuple[Range, Range, Range]] = {

@@ -14,7 +14,7 @@ Range = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Measures:
+class SizeRanges:
     """Ranges [m] of width, depth and height of a kind, and of its mass as density [kg/m^3] of its bounding box.
 
     No `depth`: as deep as wide. No `height`: as high as wide. `colours`: the words that it comes in, all if empty.
@@ -29,15 +29,15 @@ class Measures:
 
 FRUIT = (700.0, 950.0)
 """Density of fruit [kg/m^3]; chosen: below that of water, in which apples float."""
-MEASURES: dict[str, Measures] = {
-    "mug": Measures((0.066, 0.080), height=(0.075, 0.110), density=(450, 750)),
-    "can": Measures((0.052, 0.074), height=(0.085, 0.150), density=(300, 800)),
-    "bottle": Measures((0.055, 0.074), height=(0.160, 0.250), density=(300, 750)),
-    "apple": Measures((0.062, 0.076), density=FRUIT, colours=("red", "green", "yellow")),
-    "ball": Measures((0.045, 0.072), density=(150, 400)),
-    "block": Measures((0.036, 0.060), density=(400, 700)),
-    "box": Measures((0.080, 0.140), (0.042, 0.068), (0.110, 0.190), density=(150, 450)),
-    "bowl": Measures((0.120, 0.165), height=(0.048, 0.068), density=(250, 450)),
+MEASURES: dict[str, SizeRanges] = {
+    "mug": SizeRanges((0.066, 0.080), height=(0.075, 0.110), density=(450, 750)),
+    "can": SizeRanges((0.052, 0.074), height=(0.085, 0.150), density=(300, 800)),
+    "bottle": SizeRanges((0.055, 0.074), height=(0.160, 0.250), density=(300, 750)),
+    "apple": SizeRanges((0.062, 0.076), density=FRUIT, colours=("red", "green", "yellow")),
+    "ball": SizeRanges((0.045, 0.072), density=(150, 400)),
+    "block": SizeRanges((0.036, 0.060), density=(400, 700)),
+    "box": SizeRanges((0.080, 0.140), (0.042, 0.068), (0.110, 0.190), density=(150, 450)),
+    "bowl": SizeRanges((0.120, 0.165), height=(0.048, 0.068), density=(250, 450)),
 }
 """Sizes of household goods (supermarket and kitchen shelves) whose narrowest side the hand of 85 mm takes."""
 LAID = ("mug", "can", "bottle", "box")

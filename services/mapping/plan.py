@@ -40,7 +40,7 @@ MARGIN = 0.15
 """Floor plan beyond what is known [m]."""
 
 
-class Lidar(NamedTuple):
+class EndPoints(NamedTuple):
     """Lidar end points (n, 2) [map] of all keyframes, and the sensor's position (n, 2) [map] for each."""
 
     points: Array
@@ -49,7 +49,7 @@ class Lidar(NamedTuple):
 
 def floor_plan(
     name: str,
-    lidar: Lidar,
+    lidar: EndPoints,
     grid: Grid,
     states: NDArray[np.uint8],
     level: Array,

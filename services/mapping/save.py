@@ -17,7 +17,7 @@ from services.mapping.barriers import Met, glass
 from services.mapping.depth import Picture
 from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot
-from services.mapping.plan import Lidar, floor_plan
+from services.mapping.plan import EndPoints, floor_plan
 from services.mapping.pose_graph import Edge, PoseGraph
 from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
@@ -72,7 +72,7 @@ def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Hous
     there = grid.at(ends, ndimage.binary_dilation(grid.walls))
     taken = ndimage.binary_dilation(grid.walls | grid.covered)
     level, low = (rows[grid.at(rows, taken)] for rows in (_seen(mapper, "level"), _low(mapper)))
-    lidar = Lidar(ends[there], seen_from[there])
+    lidar = EndPoints(ends[there], seen_from[there])
     return floor_plan(name, lidar, grid, states, level, low, glass(mapper.panes))
 
 

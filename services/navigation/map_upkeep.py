@@ -8,7 +8,7 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Array
 from services.navigation.config import NavigationConfig
-from services.navigation.motion.contacts import Contacts
+from services.navigation.motion.contacts import UnseenObstacles
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.low_things import LowThings
@@ -25,7 +25,7 @@ class MapUpkeep:
         self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
         if self._changes.load(self.map.obstacles.changes):
             self.map.obstacles.remember(0.0)
-        self.contacts = Contacts(self.map, config.footprint_radius)
+        self.contacts = UnseenObstacles(self.map, config.footprint_radius)
         self._low = LowThings(self.map)
         self._second = -1
 

@@ -9,7 +9,7 @@ from common.geometry import Array
 from common.robot.joints import ARM, BASE
 from common.robot.model import Hand, arm_limits, pads, subtree
 from common.time.lockstep import DT
-from services.sim.contacts import Contacts
+from services.sim.contacts import ContactLog
 from services.sim.model import Robot
 
 SPEED = 0.150
@@ -48,7 +48,7 @@ class Body:
         self.gripper_bodies = subtree(names, "gripper")
         base = names.body("base").id
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body_rootid[base]}
-        self.contacts = Contacts(names, self.robot_bodies, self.pads, objects)
+        self.contacts = ContactLog(names, self.robot_bodies, self.pads, objects)
 
     def at_home(self, pose: tuple[float, float, float]) -> None:
         """Put the robot at a pose (x, y, yaw) [map] with its arm in the carry pose."""

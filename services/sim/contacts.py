@@ -28,7 +28,7 @@ PATTERNS = 4096
 Pair = tuple[str, str, m.TouchKind]
 
 
-class Contacts:
+class ContactLog:
     """The log: `step` adds the contacts of one physics step, `take` returns the entries new or changed since."""
 
     def __init__(
@@ -65,7 +65,7 @@ class Contacts:
         count = data.ncon
         view = self._views.get(count)
         if view is None:
-            # Contacts stand at the start of MjData's arena: the view of so many stays valid for good. Looking the
+            # ContactLog stand at the start of MjData's arena: the view of so many stays valid for good. Looking the
             # array up anew takes longer than all that follows.
             view = self._views[count] = data.contact.geom
         pattern = view.tobytes()

@@ -8,7 +8,7 @@ import pytest
 from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
 from cli.cameras.shot import Mount, Shot
-from cli.cameras.surfaces import Arm, Room
+from cli.cameras.surfaces import Arm, SeenRoom
 from common.geometry import Array, matrix_quat
 from common.messages import Rgbd
 from common.rendering.renderer import Renderer
@@ -73,7 +73,7 @@ def test_both_mounts_are_found_to_a_millimetre(studio: Studio, views: list[Array
     by, about = off(head, studio.sensors["head"])
     assert by < 0.3 and about < 0.03
     assert head.pictures == COUNT and head.offset_deviation.max() < 0.0003
-    room = Room([shot.image for shot in shots], head)
+    room = SeenRoom([shot.image for shot in shots], head)
     first = studio.shot("head", arm.home).image
     looks = overlooks(arm, first, studio.shot("wrist", arm.home).image, room, COUNT)
     wrist = fit(room, [studio.shot("wrist", joints, n) for n, joints in enumerate(looks)])

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from cli import main
-from cli.link import Watch
+from cli.link import Subscription
 from cli.missions.explain import WIDTH, told
 from cli.missions.journal import listed
 from common import messages as m
@@ -89,7 +89,7 @@ def test_what_is_said_to_a_robot_at_work_is_answered(
 ) -> None:
     robot = AtWork(then)
     monkeypatch.setattr("cli.missions.say.linked", lambda args: contextlib.nullcontext(robot))
-    monkeypatch.setattr(Watch, "__init__", lambda self, link, topic: setattr(self, "topic", topic))
-    monkeypatch.setattr(Watch, "next", lambda self, timeout: robot.next(self.topic))
+    monkeypatch.setattr(Subscription, "__init__", lambda self, link, topic: setattr(self, "topic", topic))
+    monkeypatch.setattr(Subscription, "next", lambda self, timeout: robot.next(self.topic))
     assert main.main(["say", "what", "are", "you", "doing"]) == 0
     assert printed in capsys.readouterr().out.splitlines()

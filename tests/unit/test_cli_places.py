@@ -9,7 +9,7 @@ import pytest
 
 from cli.errors import CliError
 from cli.home import places
-from cli.link import Link, Watch
+from cli.link import Link, Subscription
 from cli.main import parser
 from common import messages as m
 from common import topics
@@ -41,7 +41,7 @@ class FakeLink:
 
 @pytest.fixture
 def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
-    parser()  # imports every command, while `Watch` is what it is
+    parser()  # imports every command, while `Subscription` is what it is
     fake = FakeLink()
 
     @contextmanager
@@ -49,7 +49,7 @@ def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
         yield fake
 
     class Answers:
-        until = Watch.until
+        until = Subscription.until
 
         def __init__(self, link: FakeLink, topic: Any) -> None:
             self._others = [m.EditResult(goal_id="somebody else's", ok=True)]
@@ -63,7 +63,7 @@ def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
             return m.EditResult(goal_id=edit.id, ok=True, name=edit.name, part=edit.part or "shelf", kind="surface")
 
     monkeypatch.setattr(places, "linked", linked)
-    monkeypatch.setattr("cli.link.Watch", Answers)
+    monkeypatch.setattr("cli.link.Subscription", Answers)
     return fake
 
 

@@ -13,16 +13,18 @@ from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown, Watcher, at
 from judge.evidence import Evidence, Sample, ThingEvidence, Want
-from judge.track import Thing
+from judge.track import ThingState
 
 SCENE = load_scene("apartment")
-APPLE = Thing(position=(5.0, -0.7, 0.76), tilt=0.0, on="kitchen table", held=False, touched=False)
-MUG = Thing(position=(4.5, -3.1, 0.81), tilt=0.0, on="counter", held=False, touched=False)
-HELD = Thing(position=(0.5, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
+APPLE = ThingState(position=(5.0, -0.7, 0.76), tilt=0.0, on="kitchen table", held=False, touched=False)
+MUG = ThingState(position=(4.5, -3.1, 0.81), tilt=0.0, on="counter", held=False, touched=False)
+HELD = ThingState(position=(0.5, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
 HOME, KITCHEN = (0.0, 0.0), (3.6, -1.2)
 
 
-def sample(t: float, base: tuple[float, float] = HOME, mug: Thing = MUG, apple: Thing = APPLE, **more: Any) -> Sample:
+def sample(
+    t: float, base: tuple[float, float] = HOME, mug: ThingState = MUG, apple: ThingState = APPLE, **more: Any
+) -> Sample:
     return Sample(t, (*base, 0.0), {"red mug": mug, "apple": apple}, opening=more.get("opening", 0.085))
 
 

@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.scene import load_scene
-from evaluation.shortest import FloorPlan
+from evaluation.shortest import ShortestPaths
 from judge.evidence import Evidence, Sample
 from judge.goal import Goal
 from judge.observer import Observer, Replica
@@ -127,7 +127,7 @@ def test_a_state_of_another_model_is_refused() -> None:
 
 
 def test_lengths_of_ways() -> None:
-    plan = FloorPlan(APARTMENT)
+    plan = ShortestPaths(APARTMENT)
     straight = plan.length((0.0, 0.0), [(0.9, -1.4)])
     assert straight == pytest.approx(math.hypot(0.9, 1.4), abs=0.08)
     kitchen = plan.length((0.0, 0.0), [(3.6, -1.2)])
@@ -138,7 +138,7 @@ def test_lengths_of_ways() -> None:
 
 
 def test_the_best_order_of_errands() -> None:
-    plan = FloorPlan(APARTMENT)
+    plan = ShortestPaths(APARTMENT)
     near, far = ((-1.5, -2.1), "living table", "toy box"), ((4.45, -3.0), "counter", "bin")
     both = plan.mission((0.0, 0.0, 0.0), [near, far])
     assert both == pytest.approx(plan.mission((0.0, 0.0, 0.0), [far, near]))

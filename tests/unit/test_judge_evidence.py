@@ -9,26 +9,26 @@ import pytest
 from common import messages as m
 from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
-from judge.evidence import CREEP, Evidence, Recorder, Sample, ThingEvidence, Want, spl
+from judge.evidence import CREEP, Evidence, EvidenceRecorder, Sample, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
-from judge.track import DROP, LIFTED, Thing, Track
+from judge.track import DROP, LIFTED, ThingState, Track
 
 WANT, MUG = Want("mug", ("tray", "desk")), frozenset({"mug"})
 KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
-ON_TABLE = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="table", held=False, touched=False)
-HELD = Thing(position=(3.0, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
-FALLING = Thing(position=(3.0, 0.0, 0.8), tilt=0.0, on="", held=False, touched=False)
-LOWER = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="", held=False, touched=False)
-ON_TRAY = Thing(position=(0.7, 0.0, 0.5), tilt=0.0, on="tray", held=False, touched=False)
-CAN = Thing(position=(3.3, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
-BALL = Thing(position=(3.6, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
+ON_TABLE = ThingState(position=(3.0, 0.0, 0.7), tilt=0.0, on="table", held=False, touched=False)
+HELD = ThingState(position=(3.0, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
+FALLING = ThingState(position=(3.0, 0.0, 0.8), tilt=0.0, on="", held=False, touched=False)
+LOWER = ThingState(position=(3.0, 0.0, 0.7), tilt=0.0, on="", held=False, touched=False)
+ON_TRAY = ThingState(position=(0.7, 0.0, 0.5), tilt=0.0, on="tray", held=False, touched=False)
+CAN = ThingState(position=(3.3, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
+BALL = ThingState(position=(3.6, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
 
 
-def changed(thing: Thing, **fields: Any) -> Thing:
+def changed(thing: ThingState, **fields: Any) -> ThingState:
     return msgspec.structs.replace(thing, **fields)
 
 
-def sample(t: float, mug: Thing, x: float = 0.0, can: Thing = CAN, ball: Thing = BALL) -> Sample:
+def sample(t: float, mug: ThingState, x: float = 0.0, can: ThingState = CAN, ball: ThingState = BALL) -> Sample:
     return Sample(t, (x, 0.0, 0.0), {"mug": mug, "can": can, "ball": ball})
 
 
@@ -38,8 +38,8 @@ GOOD = [
 ]  # fmt: skip
 
 
-def recorder(samples: list[Sample], bins: frozenset[str] = frozenset()) -> Recorder:
-    found = Recorder(KINDS, bins)
+def recorder(samples: list[Sample], bins: frozenset[str] = frozenset()) -> EvidenceRecorder:
+    found = EvidenceRecorder(KINDS, bins)
     for one in samples:
         found.add(one)
     return found
@@ -338,7 +338,7 @@ def test_a_base_stands_that_is_at_rest(drift: float, standing: bool) -> None:
 
 
 def test_without_a_sample_nothing_is_shown() -> None:
-    found = Recorder(KINDS)
+    found = EvidenceRecorder(KINDS)
     assert not found.ready and not found.conclude((WANT,), MUG).standing
     found.add(GOOD[0])
     assert found.ready and found.conclude((WANT,), MUG).standing
@@ -370,7 +370,7 @@ def test_success_is_weighted_by_the_way() -> None:
 # --- numbers as they are told
 def test_of_a_world_that_nobody_showed_nothing_is_known() -> None:
     unseen = ThingEvidence("mug", "", why="the simulation showed nothing")
-    assert Recorder(KINDS).things((WANT,)) == [unseen]
+    assert EvidenceRecorder(KINDS).things((WANT,)) == [unseen]
 
 
 def test_ways_are_told_to_the_millimetre() -> None:

@@ -12,7 +12,7 @@ from common.robot.model import Hand
 from common.time.lockstep import DT
 from evaluation.faults.physical.fault import PhysicalFault
 from evaluation.faults.physical.injector import Injector
-from evaluation.shortest import FloorPlan
+from evaluation.shortest import ShortestPaths
 from services.sim.physics import Physics
 
 PULLED = 20.0
@@ -81,8 +81,8 @@ class InTheWay(Injector):
         self._resting = 0.0
 
     @cached_property
-    def _plan(self) -> FloorPlan:
-        return FloorPlan(self.physics.scene)
+    def _plan(self) -> ShortestPaths:
+        return ShortestPaths(self.physics.scene)
 
     def step(self, now: float, state: str) -> str:
         if state not in ("NAVIGATING", "RETURNING", "GROUNDING"):

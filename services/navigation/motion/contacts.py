@@ -29,7 +29,7 @@ KEPT = 300.0
 it is gone."""
 
 
-class Contacts:
+class UnseenObstacles:
     """Places [map] where something unseen has held the base up, kept in the costmap for some time."""
 
     def __init__(self, costmap: Costmap, footprint: float) -> None:

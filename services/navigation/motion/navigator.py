@@ -8,7 +8,7 @@ from common.geometry import Array, Point, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.motion.collision_avoidance import avoid
-from services.navigation.motion.contacts import Contacts
+from services.navigation.motion.contacts import UnseenObstacles
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead
 from services.navigation.motion.progress import PASSING, PERSON, Progress
@@ -34,7 +34,7 @@ class Navigator:
         config: NavigationConfig,
         costmap: Costmap,
         planner: PathPlanner,
-        contacts: Contacts,
+        contacts: UnseenObstacles,
         choices: list[tuple[float, Pose2]],
         name: str,
         now: float,

@@ -7,7 +7,7 @@ from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.localisation.disambiguation import common_ground, most_telling
 from services.navigation.localisation.state_estimation import StateEstimator
-from services.navigation.motion.contacts import Contacts
+from services.navigation.motion.contacts import UnseenObstacles
 from services.navigation.motion.navigator import Navigator
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
@@ -77,7 +77,7 @@ class Reorientation:
                 return
             self._drives += 1
             self._io.log.info("drives to tell places apart", places=self._places)
-            contacts = Contacts(ground, self._config.footprint_radius)
+            contacts = UnseenObstacles(ground, self._config.footprint_radius)
             self._navigator = Navigator(
                 self._config, ground, planner, contacts, [(0.0, spot)], f"lost/{self._drives}", now
             )
