@@ -25,7 +25,7 @@ class Silent:
 
 @pytest.fixture
 def picture(monkeypatch: pytest.MonkeyPatch) -> watch.Picture:
-    monkeypatch.setattr(watch, "Watch", lambda link, topic: None)
+    monkeypatch.setattr(watch, "Subscription", lambda link, topic: None)
     return watch.Picture(Silent())  # type: ignore[arg-type]
 
 
