@@ -1,5 +1,6 @@
 """Which of the grasps that can be come to is taken, and when another stance is better."""
 
+import math
 from collections.abc import Callable, Generator
 from dataclasses import replace
 from types import SimpleNamespace
@@ -8,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from common.geometry import compose, inverse
 from common.messages import WorldObject
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import Pose
@@ -15,10 +17,11 @@ from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution import grasp_choice
 from services.manipulation.execution.robot import Failure, Robot
 from services.manipulation.grasps.grasp import POOR, Grasp
+from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
-from services.manipulation.planning.plan_grab import plan_grab
-from services.manipulation.planning.planning_scene import obstacles
-from tests.unit.test_manipulation_stances import CONFIG, HOME, PLANNER, REST
+from services.manipulation.planning.planning_scene import target_of
+from services.manipulation.planning.stances import other_stance
+from tests.unit.test_manipulation_stances import CONFIG, HOME, PLANNER, REST, TABLE, bottle
 
 POOR_ONE = Grasp(Pose(np.zeros(3), np.eye(3)), 0.03, 0.01, 0.0, "poor", on_surface=True, worth=POOR - 0.1)
 FOUND = WorldObject("pliers", "tool", "red", (0.6, 0.0, 0.87), size=(0.18, 0.05, 0.012))
@@ -77,14 +80,21 @@ def test_it_is_taken_from_here_where_nothing_is_gained_elsewhere(
     assert end(choose(monkeypatch, grasp, stance, tried, sent)).grasp is grasp
 
 
-def test_no_grasp_worth_less_than_asked_for_is_planned() -> None:
-    ball = Target("ball", "ball", (0.65, 0.0, 0.53), 0.0, (0.06, 0.06, 0.06), shape="irregular")
-    around = [obstacles(HOME, (-50.0, 0.0, 0.0), [])]
+@pytest.mark.parametrize(("worth", "told"), [(POOR, True), (POOR - 0.1, False)])
+def test_the_stance_has_a_good_grasp_of_those_known_in_reach(
+    monkeypatch: pytest.MonkeyPatch, worth: float, told: bool
+) -> None:
+    found, base = bottle(0.0, 0.0), (TABLE.center[0], TABLE.center[1] - 1.6, math.pi / 2)
+    seen = replace(target_of(found, base, HOME), shape="round")
+    grasp = replace(candidates(seen, PLANNER.arm.forward, PLANNER.arm.widest)[0], on_surface=True, worth=worth)
+    monkeypatch.setattr(PLANNER, "candidates", lambda target: [[grasp]])
     lifts = CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach
-    grasp = plan_grab(PLANNER, ball, around, REST, *lifts, frozenset(), []).grasp
-    assert grasp.on_surface
-    other = plan_grab(PLANNER, ball, around, REST, *lifts, frozenset(), [], least=grasp.worth + 0.001).grasp
-    assert not other.on_surface
+    stance = other_stance(PLANNER, HOME, found, [found], [base], REST, *lifts, None, seen)
+    assert (stance is not None) is told
+    if stance is not None:
+        # The same grasp, from there.
+        x, y, _ = compose(inverse(stance), compose(base, (*grasp.pose.position[:2], 0.0)))
+        assert math.hypot(x - PLANNER.arm.forward, y) < CONFIG.reach
 
 
 def test_the_far_side_is_left_out_only_where_the_hand_holds_it_better_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,5 @@
 """The choice of a grasp, after which the object can be put down as it is to stand: from here or from another stance."""
 
-import math
 from collections.abc import Collection
 
 import numpy as np
@@ -10,7 +9,7 @@ from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
-from services.manipulation.grasps.grasp import POOR, Grasp, worse
+from services.manipulation.grasps.grasp import Grasp, is_poor
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others
@@ -46,9 +45,9 @@ def chosen(
         except Failure as other:
             failure = other
         else:
-            if worse(plan.grasp, POOR) and not tried and found.label not in robot.sent_to:
+            if is_poor(plan.grasp) and not tried and found.label not in robot.sent_to:
                 poor = Failure("UNREACHABLE", f"the {found.label} is hardly held from here")
-                yield from _look_elsewhere(robot, found, poor, stand_on, POOR)
+                yield from _look_elsewhere(robot, found, poor, stand_on, target)
             return plan
         if failure.code != "UNREACHABLE":
             raise failure
@@ -71,9 +70,9 @@ def _stands_on(robot: Robot, found: WorldObject, target: Target, to: str) -> flo
 
 
 def _look_elsewhere(
-    robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None, least: float = -math.inf
+    robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None, seen: Target | None = None
 ) -> Steps[None]:
-    """Return where no other stance helps; `least`: worth of the grasp that is wanted.
+    """Return where no other stance helps; `seen`: the target of which a good grasp is wanted.
 
     Raises:
         Failure: the one to plan a grasp, with where the base would have to stand for one.
@@ -81,7 +80,7 @@ def _look_elsewhere(
     config, objects, told = robot.config, robot.source.objects(), robot.sent_to.pop(found.label, [])
     stance = yield from robot.work(
         other_stance, planner_of(robot), robot.io.household, found, objects, [robot.base, *told], robot.joints.copy(),
-        config.approach_distance, config.lift_height, config.reach, stand_on, least,
+        config.approach_distance, config.lift_height, config.reach, stand_on, seen,
     )  # fmt: skip
     if stance is None:
         return

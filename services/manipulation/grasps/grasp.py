@@ -95,9 +95,9 @@ def certainly_too_wide(target: Target, widest: float) -> bool:
     return target.spread <= CERTAIN and min(target.size[:2]) - 2 * target.spread > widest
 
 
-def worse(grasp: Grasp, least: float) -> bool:
-    """A grasp on the surface is worth less than that; one by rule is as good as its rule."""
-    return grasp.on_surface and grasp.worth < least
+def is_poor(grasp: Grasp) -> bool:
+    """It hardly holds, as far as the surface tells; a grasp by rule is as good as its rule."""
+    return grasp.on_surface and grasp.worth < POOR
 
 
 def upper_end(target: Target, rotation: Array) -> float | None:

@@ -1,6 +1,5 @@
 """Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
 
-import math
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.contacts import new_sides_first
 from services.manipulation.arm.trajectory import Leg, connect
 from services.manipulation.grasps.antipodal import alike
-from services.manipulation.grasps.grasp import Grasp, certainly_too_wide, worse
+from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
 from services.manipulation.grasps.target import Target
@@ -56,7 +55,6 @@ def plan_grab(
     skip: Collection[Grasp],
     touched: list[Array],
     stand_on: float | None = None,
-    least: float = -math.inf,
 ) -> GrabPlan:
     """The first candidate grasp that can be reached and carried away.
 
@@ -65,7 +63,7 @@ def plan_grab(
 
     `skip`: grasps that are not tried, relative to the object's place; `touched` are rotations (3, 3) of the hand in the
     base frame with which the open fingers touched the object: grasps from other sides come first. `stand_on`: as in
-    `Way`; `least`: worth of a grasp on the surface from which on it is tried.
+    `Way`.
 
     Raises:
         PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
@@ -80,7 +78,7 @@ def plan_grab(
 
     def attempt(some: Sequence[Grasp], way: Way) -> GrabPlan | None:
         for grasp in some:
-            plan = with_fingers(planner, target, grasp, way, now, _whole)
+            plan = with_fingers(planner, target, grasp, way, now, whole_grab)
             if isinstance(plan, GrabPlan):
                 return replace(plan, options=tuple(options))
             misses[grasp.name] = plan
@@ -89,8 +87,7 @@ def plan_grab(
     ways = [Way(solids, shaped, approach, lift, stand_on) for solids in around for shaped in (False, True)]
     for stage in planner.candidates(target):
         options += stage
-        left = [g for g in stage if not worse(g, least)]
-        left = [g for g in left if not any(same_hold(from_place(g, place), other) for other in skip)]
+        left = [g for g in stage if not any(same_hold(from_place(g, place), other) for other in skip)]
         left = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
         left.sort(key=lambda g: any(g.on_surface and _beside(from_place(g, place), other) for other in skip))
         tried += left
@@ -100,7 +97,7 @@ def plan_grab(
         # Where nothing was met neither a narrower hand nor a smaller margin helps.
         if plan := attempt([g for g in tried if misses[g.name].met], way):
             return plan
-    on_it = all(g.over_edge and "" in misses[g.name].met for g in tried) and len(tried) == len(options)
+    on_it = all(g.over_edge and "" in misses[g.name].met for g in tried)
     if on_it and certainly_too_wide(target, planner.arm.widest) and not skip:
         raise PlanError("TOO_WIDE", f"{_in_mm(target)}, at most {1000 * planner.arm.widest:.0f} mm go into the hand")
     if not tried:
@@ -136,7 +133,8 @@ def _in_mm(target: Target) -> str:
     return f"{target.label} measures {x:.0f} x {y:.0f} x {z:.0f} mm"
 
 
-def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
+def whole_grab(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
+    """One grasp with the ways to it and to the carry pose; or why there is none."""
     lines = straight_parts(planner, target, grasp, way, now)
     if isinstance(lines, Miss):
         return lines

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import zip_longest
 
 from msgspec import structs
@@ -10,13 +11,16 @@ from msgspec import structs
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.floor_plan import Receptacle
 from common.furniture_tops import support_at
-from common.geometry import SIDES, Array, Pose2, compose, inverse
+from common.geometry import SIDES, Array, Pose2, compose, inverse, yaw_matrix
 from common.household import Household
 from common.messages import WorldObject
+from services.manipulation.arm.arm_model import Pose
+from services.manipulation.grasps.grasp import Grasp, is_poor
+from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.plan_grab import plan_grab
+from services.manipulation.planning.plan_grab import GrabPlan, plan_grab, whole_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
-from services.manipulation.planning.straight_grab import Way, feasible
+from services.manipulation.planning.straight_grab import STANCE_GRASPS, Way, feasible, with_fingers
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
 """Distances [m] from the base's middle to the object that are tried. Chosen: the hand comes level from the farthest."""
@@ -37,23 +41,53 @@ def other_stance(
     lift: float,
     reach: float,
     stand_on: float | None = None,
-    least: float = -math.inf,
+    seen: Target | None = None,
 ) -> Pose2 | None:
     """A pose (x, y, theta) [map] before an object from which a whole grab of it can be planned; None if none was found.
 
     `objects`: all that is known to stand around; `but`: where the base stands and has been sent to; `joints` (7,) of
-    the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`, `least`: as in `plan_grab`.
+    the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`: as in `plan_grab`. With
+    `seen`, the object from where the base stands, one of the good grasps of that has to be in reach: to look for grasps
+    anew at every stance takes seconds.
     """
     around = others(objects, found)
-    for pose in stances(household, found, but, STAND_OFFS)[:MOST]:
-        target, solids = target_of(found, pose, household), obstacles(household, pose, around, margin=MARGINS[0])
+    good = _good(planner, seen) if seen is not None else []
+    for pose in stances(household, found, but, STAND_OFFS)[:MOST] if good or seen is None else ():
+        solids = obstacles(household, pose, around, margin=MARGINS[0])
+        if seen is not None:
+            way = Way(solids, False, approach, lift, stand_on)
+            if _holds(planner, planner.believed(seen), good, compose(inverse(pose), but[0]), way, joints):
+                return pose
+            continue
+        target = target_of(found, pose, household)
         # What has no straight way in and up needs no search for the ways there and back.
-        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints, least):
+        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints):
             continue
         with suppress(PlanError):
-            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on, least)
+            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on)
             return pose
     return None
+
+
+def _good(planner: Planner, seen: Target) -> list[Grasp]:
+    """The good grasps of an object, the best first, as many as are tried at a stance."""
+    found = [g for stage in planner.candidates(planner.believed(seen)) for g in stage if not is_poor(g)]
+    return found[:STANCE_GRASPS]
+
+
+def _holds(planner: Planner, target: Target, grasps: Sequence[Grasp], move: Pose2, way: Way, now: Array) -> bool:
+    """One of the grasps of an object can be carried out after both were moved by (x, y, theta) in the base frame."""
+    turn, (x, y, _) = yaw_matrix(move[2]), move
+    at = turn @ target.position + (x, y, 0.0)
+    points = None if target.points is None else target.points @ turn.T
+    there = replace(target, position=tuple(at.tolist()), yaw=target.yaw + move[2], points=points)
+    for grasp in grasps:
+        pose = Pose(turn @ grasp.pose.position + (x, y, 0.0), turn @ grasp.pose.rotation)
+        axis = None if grasp.axis is None else grasp.axis + move[2]
+        moved = replace(grasp, pose=pose, axis=axis)
+        if isinstance(with_fingers(planner, there, moved, way, now, whole_grab), GrabPlan):
+            return True
+    return False
 
 
 def stances(household: Household, found: WorldObject, but: Sequence[Pose2], stand_offs: Sequence[float]) -> list[Pose2]:

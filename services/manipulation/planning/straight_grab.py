@@ -1,6 +1,5 @@
 """The straight parts of a grab, to the grasp and up from it, with room for the hand now and when it sets down again."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -11,7 +10,7 @@ from common.geometry import Array
 from common.robot.model import Hand
 from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.arm.ik import seeds
-from services.manipulation.grasps.grasp import Grasp, worse
+from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import Planner
@@ -59,14 +58,12 @@ class Way:
     """By height and slant of the hand, whether it can: other bearings come down the same."""
 
 
-def feasible(planner: Planner, target: Target, way: Way, now: Array, least: float = -math.inf) -> bool:
-    """Some grasp worth `least` can be come to and lifted straight; the way there and away is not looked for."""
+def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
+    """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
     target = planner.believed(target)
     for stage in planner.candidates(target):
         for wanted in stage[:STANCE_GRASPS]:
-            if not worse(wanted, least) and isinstance(
-                with_fingers(planner, target, wanted, way, now, straight_parts), Lines
-            ):
+            if isinstance(with_fingers(planner, target, wanted, way, now, straight_parts), Lines):
                 return True
     return False
 
