@@ -156,7 +156,11 @@ def _looks(words: Sequence[str], o: WorldObject, any_colour: bool, vague: bool) 
     if kinds and (o.kind in SHAPELESS or (vague and _shaped(o) < VAGUE)):
         # A teapot with its spout ahead is no mug, jar or can.
         kind = max(kind, unlike)
-    return kind if any_colour else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
+    if any_colour or not shades:
+        return kind
+    # What is yellow or brown may be orange: between the two.
+    between = SECOND * (sum(o.colour in ALIKE[shade] for shade in shades) > 1)
+    return kind * max(between, *(_has_colour(shade, o) for shade in shades))
 
 
 class _Words(NamedTuple):

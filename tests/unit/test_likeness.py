@@ -201,6 +201,12 @@ def test_a_colour_between_two_may_be_either_and_is_asked_about() -> None:
     assert ground("beige can", [tin], HOUSEHOLD, (0.0, 0.0, 0.0), {}).found is None
 
 
+def test_what_has_one_of_two_colours_may_have_one_between_them() -> None:
+    for shade, asked in (("orange", True), ("red", False), ("green", False)):
+        baked = measured(f"{shade} toy", {"toy": 0.5, "tool": 0.4, "carton": 0.1}, {shade: 1.0})
+        assert (partly("croissant", baked, HOUSEHOLD) >= LIKELY) == asked, shade
+
+
 def test_one_is_a_word_for_anything() -> None:
     found = ground("the red one", [BALL, TIN], HOUSEHOLD, (0.0, 0.0, 0.0), {})
     assert found.found is not None and found.found.label == "red ball"
