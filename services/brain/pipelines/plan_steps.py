@@ -11,6 +11,7 @@ from common.messages import AROUND, PlanStep
 from common.plan_rules import is_destination
 from services.brain.mission.context import Context
 from services.brain.pipelines.shared import drive_home
+from services.brain.recoveries.put_back import HoldsWhatWasMeant
 from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
 from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
 from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, WithinReach, label_of, object_ref
@@ -138,14 +139,21 @@ def grasp(ctx: Context, item: str) -> Node:
     near = Condition("near_it", approach(ctx, item), lambda: ctx.mission.at != item)
     still = StillMeant("still_meant", ctx, item)
     reached = WithinReach("within_reach", ctx, item)
-    first = Sequence("grasp_once", reached, near, still, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
+    held = grab(ctx, item), Settle("settle", ctx), HoldsWhatWasMeant(ctx, item)
+    first = Sequence("grasp_once", reached, near, still, *held, name=f"grasp {item}")
     if not ctx.config.grab_retries:
         return first
     task = Task(
         item,
         find=lambda: find(ctx, item),
         approach=lambda: approach(ctx, item),
-        grab=lambda: Sequence("grab_if_meant", StillMeant("still_meant", ctx, item), grab(ctx, item)),
+        grab=lambda: Sequence(
+            "grab_if_meant",
+            StillMeant("still_meant", ctx, item),
+            grab(ctx, item),
+            Settle("settle", ctx),
+            HoldsWhatWasMeant(ctx, item),
+        ),
     )
     return with_recoveries("grasp", ctx, first, AFTER_GRASPING, task, name=f"grasp: {item}")
 

@@ -9,7 +9,6 @@ from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.find import LocateObject
 from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, candidates
-from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
 
 
@@ -26,7 +25,7 @@ def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = Fa
 def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
     """Ask which object is meant, the one before the robot first; approach and grab the one that the person confirms."""
     asked = ask_whether(ctx, task, LEAST)
-    return Sequence("ask_and_grab", asked, task.approach(), task.grab(), Settle("settle", ctx))
+    return Sequence("ask_and_grab", asked, task.approach(), task.grab())
 
 
 def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:

@@ -6,7 +6,7 @@ from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.find import label_of
 from services.brain.steps.identify import not_plain
-from services.brain.steps.leaf import Settle
+from services.brain.steps.motion import ANOTHER_HELD
 from services.brain.tree.composites import Retry, Sequence
 
 STANCES = 2
@@ -15,7 +15,7 @@ STANCES = 2
 
 def regrasp(ctx: Context, task: Task) -> Behaviour:
     """Find, approach and grab, `grab_retries` times; what was only stood before wrongly is no try."""
-    once = Sequence("look_and_grab_again", task.find(), task.approach(), task.grab(), Settle("settle", ctx))
+    once = Sequence("look_and_grab_again", task.find(), task.approach(), task.grab())
     again = Retry("from_another_stance", ctx, once, STANCES, again=lambda: stands_wrongly(ctx, task.item))
     more = max(0, ctx.config.grab_retries - 1)
     return Retry("regrasp", ctx, again, more, again=lambda: grab_failed(ctx) and not not_plain(ctx))
@@ -24,7 +24,9 @@ def regrasp(ctx: Context, task: Task) -> Behaviour:
 def grab_failed(ctx: Context) -> bool:
     """Manipulation could not grab it, and trying again may help."""
     failure = ctx.mission.failure
-    return failure is not None and failure.stage == "GRABBING" and not failure.permanent
+    if failure is None or failure.code == ANOTHER_HELD:
+        return False
+    return failure.stage == "GRABBING" and not failure.permanent
 
 
 def stands_wrongly(ctx: Context, item: str) -> bool:

@@ -6,6 +6,7 @@ To add one: write its two functions in a module beside this one, and a row here 
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_rest, ask_and_grab, ask_whether, may_be, remains_possible
 from services.brain.recoveries.look_closer import look_at_the_rest, look_closer, unseen_from_near, unsure
+from services.brain.recoveries.put_back import put_back, took_another
 from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
 from services.brain.recoveries.regrasp import grab_failed, regrasp
@@ -26,10 +27,11 @@ AFTER_LOOKING = (
 """The object was not seen from where the robot stands, or several match."""
 
 AFTER_GRASPING = (
+    Recovery("took_another", took_another, put_back),
     Recovery("grab_failed", grab_failed, regrasp),
     Recovery("not_plain", not_plain, ask_and_grab),
 )
-"""The hand does not hold the object."""
+"""The hand does not hold the object, or another one."""
 
 AFTER_PUTTING_DOWN = (Recovery("lost_or_not_where_it_belongs", needs_replacing, put_right),)
 """The object was lost on the way, or does not stand where it belongs."""

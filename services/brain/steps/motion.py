@@ -22,6 +22,8 @@ from services.brain.world.standing_poses import place_pose
 Text = Callable[[], str]
 LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 """Manipulation's codes for a hand that is empty and should have held something."""
+ANOTHER_HELD = "ANOTHER_HELD"
+"""Failure code: something else than what was meant is in the hand."""
 BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
 """Why no grasp can hold an object, in words, by manipulation's code."""
 
