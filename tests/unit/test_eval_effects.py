@@ -11,9 +11,22 @@ from evaluation.case import Case, Line, Observed
 from evaluation.suites.commands import ALL, TALKS, TASKS, commands
 from evaluation.verdict import judge
 from judge.claims import Claim
-from judge.effects import Effect, Shown, Watcher, at
+from judge.effects import (
+    AT_PLACE,
+    BESIDE,
+    DRIVEN,
+    HAND_CLOSED,
+    HAND_OPEN,
+    STOOD,
+    STOOD_FOR,
+    Effect,
+    Shown,
+    Watcher,
+    at,
+    mentions,
+)  # fmt: skip
 from judge.evidence import Evidence, Sample, ThingEvidence, Want
-from judge.track import ThingState
+from judge.track import MOVED, TOPPLED, ThingState
 
 SCENE = load_scene("apartment")
 APPLE = ThingState(position=(5.0, -0.7, 0.76), tilt=0.0, on="kitchen table", held=False, touched=False)
@@ -185,3 +198,116 @@ def test_what_has_an_upright_goes_over_and_an_apple_only_turns() -> None:
     apple, mug = (msgspec.structs.replace(thing, **turned) for thing in (APPLE, MUG))
     assert why(Effect("remains", "apple", "kitchen table"), sample(0.0), sample(1.0, apple=apple)) == ""
     assert "went over" in why(Effect("remains", "red mug", "counter"), sample(0.0), sample(1.0, mug=mug))
+
+
+# --- what is said of an effect that was not shown, and where the limits lie
+STAYS, RESTS = Effect("remains", "red mug", "counter"), Effect("rests", "red mug")
+BESIDE_APPLE, SEES = Effect("beside", "red mug", "apple"), Effect("tells what it sees")
+WHERE, ON_COUNTER = Effect("tells where", "apple"), Effect("tells what is on", "counter")
+
+
+def thing(x: float, on: str = "counter", **more: Any) -> ThingState:
+    return ThingState((x, 0.0, 0.0), more.get("tilt", 0.0), on, more.get("held", False), more.get("touched", False))
+
+
+@pytest.mark.parametrize(
+    ("effect", "now", "reason"),
+    [
+        (Effect("holds", "red mug"), {"mug": HELD, "apple": HELD}, "holds red mug and apple, not the red mug"),
+        (RESTS, {"mug": thing(0.0, "")}, "the red mug is not put down"),
+        (RESTS, {"mug": thing(0.0, "floor")}, "the red mug is not put down"),
+        (RESTS, {"mug": thing(0.0, touched=True)}, "the red mug is not put down"),
+        (RESTS, {"mug": thing(0.0, "", touched=True)}, "the red mug is not put down"),
+        (STAYS, {"mug": HELD}, "the red mug is in the hand"),
+        (STAYS, {"mug": thing(0.0, "")}, "the red mug is on nothing, not on the counter"),
+        (STAYS, {"mug": thing(0.0, "sofa")}, "the red mug is on sofa, not on the counter"),
+        (STAYS, {"mug": thing(0.0, tilt=TOPPLED)}, ""),
+        (Effect("hand", "open"), {"opening": HAND_OPEN}, ""),
+        (Effect("hand", "closed"), {"opening": HAND_CLOSED}, ""),
+        (Effect("hand", "closed"), {"opening": 0.6}, "the hand is 600 mm open, not closed"),
+        (BESIDE_APPLE, {"mug": thing(0.0), "apple": thing(BESIDE)}, ""),
+        (
+            BESIDE_APPLE, {"mug": thing(0.0, "")},
+            "the red mug is on nothing, the apple on kitchen table",
+        ),
+        (
+            BESIDE_APPLE, {"apple": thing(0.0, "")},
+            "the red mug is on counter, the apple on nothing",
+        ),
+    ],
+)  # fmt: skip
+def test_what_physics_shows_instead_is_told(effect: Effect, now: dict[str, Any], reason: str) -> None:
+    assert why(effect, sample(0.0), sample(1.0, **now)) == reason
+
+
+def test_what_is_as_far_as_allowed_is_not_moved() -> None:
+    before, after = sample(0.0, mug=thing(0.0)), sample(1.0, mug=thing(MOVED))
+    assert why(Effect("left alone", "red mug"), before, after) == why(Effect("still"), before, after) == ""
+    assert why(Effect("still"), sample(0.0), sample(1.0, (DRIVEN, 0.0))) == ""
+    there_and_back = [sample(float(n), (0.2 * (n % 2), 0.0)) for n in range(3)]
+    assert why(Effect("still"), *there_and_back) == "drove 0.4 m", "every way counts"
+
+
+def test_who_stands_has_drifted_no_farther_than_that_for_that_long() -> None:
+    stood = [sample(5.0, KITCHEN), sample(5.0 + STOOD_FOR, KITCHEN)]
+    for kind in ("visits", "ends", "stands"):
+        assert why(Effect(kind, "kitchen"), *stood) == ""  # type: ignore[arg-type]
+    assert why(Effect("stands"), sample(0.0), sample(STOOD_FOR, (STOOD, 0.0))) == ""
+    passing = [sample(5.0, KITCHEN), sample(5.1, KITCHEN)]
+    assert why(Effect("visits", "kitchen"), *passing) == "never stood at the kitchen"
+    assert why(Effect("ends", "kitchen"), *passing) == "ended at (3.6, -1.2), not at the kitchen"
+    assert why(Effect("stands"), *passing) == "the base still drives"
+
+
+def test_an_effect_is_told_in_words_and_of_nothing_seen_nothing_is_shown() -> None:
+    (shown,) = Watcher(SCENE).conclude((BESIDE_APPLE,))
+    assert shown == Shown("beside red mug apple", False, "the simulation showed nothing")
+    watcher = Watcher(SCENE)
+    for seen in (sample(0.0), sample(1.0, mug=HELD), sample(2.0, apple=HELD), sample(3.0)):
+        watcher.add(seen)
+    assert watcher.lifted == {"red mug", "apple"}
+
+
+def test_a_thing_that_no_scene_lists_has_no_upright() -> None:
+    seen = Sample(0.0, (0.0, 0.0, 0.0), {"parcel": thing(0.0, tilt=1.0)})
+    assert why(Effect("remains", "parcel", "counter"), seen) == ""
+
+
+@pytest.mark.parametrize(
+    ("effect", "seen", "sentences", "reason"),
+    [
+        (WHERE, {}, ("Did you say the apple is on the kitchen table?",), "no answer: tells where apple"),
+        (WHERE, {}, ("Do you mean the apple on the kitchen table?",), "no answer: tells where apple"),
+        (WHERE, {}, ("It is an apple on the kitchen table.", "The apple is on the sofa."), ""),
+        (WHERE, {"apple": HELD}, ("The apple is on the sofa.",), "it is on the hand"),
+        (ON_COUNTER, {"apple": MUG}, ("A red mug is on the counter.",), "there is apple, red mug"),
+        (ON_COUNTER, {"mug": HELD}, ("A red mug is on the counter.",), "there is nothing"),
+        (SEES, {}, ("I see an apple.",), "no answer: tells what it sees"),
+        (SEES, {}, ("I see nothing.",), ""),
+        (SEES, {}, ("On the counter is a red mug.",), "the red mug is on the , it is on the counter"),
+        (Effect("says", "Hello"), {}, ("Done.",), "never said Hello"),
+        (Effect("says"), {}, (), "never said what it sees"),
+    ],
+)  # fmt: skip
+def test_answers_are_held_against_physics_as_they_are_given(
+    effect: Effect, seen: dict[str, Any], sentences: tuple[str, ...], reason: str
+) -> None:
+    found = why(effect, sample(0.0, **seen), *sentences)
+    assert found.endswith(reason) and bool(found) == bool(reason), found
+
+
+def test_what_is_said_before_anything_was_seen_answers_nothing() -> None:
+    assert why(WHERE, "The apple is on the kitchen table.", sample(0.0)) == "no answer: tells where apple"
+
+
+def test_at_a_place_is_as_near_as_its_limit() -> None:
+    home = SCENE.home
+    assert at(SCENE, home.name, home.x + AT_PLACE, home.y) and not at(SCENE, home.name, home.x, home.y + 3.0)
+
+
+def test_of_two_names_the_longer_is_meant() -> None:
+    first, second, *_ = SCENE.objects
+    named = (msgspec.structs.replace(first, name="mug"), msgspec.structs.replace(second, name="mug two"))
+    assert mentions("mug two and mug", msgspec.structs.replace(SCENE, objects=named)) == [
+        ("thing", "mug two"), ("thing", "mug"),
+    ]  # fmt: skip
