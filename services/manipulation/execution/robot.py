@@ -107,12 +107,15 @@ class Robot:
     def travel(self, way: Sequence[Leg], share: float = 1.0) -> Steps[None]:
         """Follow the legs of a path with a `share` of the joint speed, slowly and gently where they are near something.
 
+        Before such a leg the arm comes to rest: the load it begins with is what it is watched by.
+
         Raises:
             Failure: as `follow`.
         """
         speed = self.config.joint_speed
-        for leg in way:
+        for n, leg in enumerate(way):
             if leg.near:
+                yield from self.wait(CALM if n else 0.0)
                 yield from self.follow(leg.path, speed * min(share, ARRIVING), most=MET)
             else:
                 yield from self.follow(leg.path, speed * share)
