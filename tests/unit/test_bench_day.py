@@ -1,7 +1,10 @@
 """The account of a long day, and its clock."""
 
+import contextlib
 from types import SimpleNamespace
 from typing import Any
+
+import pytest
 
 from bench.day.__main__ import Day
 from bench.day.account import DISK, Account
@@ -19,9 +22,15 @@ def heard(*times: float | None) -> Any:
     return SimpleNamespace(latest=latest)
 
 
-def test_robot_time_stays_where_it_was_while_the_simulation_does_not_answer() -> None:
-    day: Any = object.__new__(Day)
-    day._now, day.link = 0.0, heard(None, 61.0, None, 62.5)
+@pytest.fixture
+def day(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A day whose `link` the test sets."""
+    monkeypatch.setattr("bench.day.__main__.open_session", lambda *_: contextlib.nullcontext())
+    return Day(SimpleNamespace(connect="", namespace=""), None, 0)  # type: ignore[arg-type]
+
+
+def test_robot_time_stays_where_it_was_while_the_simulation_does_not_answer(day: Any) -> None:
+    day.link = heard(None, 61.0, None, 62.5)
     assert [day.now for _ in range(4)] == [0.0, 61.0, 61.0, 62.5]
 
 
@@ -50,12 +59,10 @@ def test_a_day_that_was_too_short_for_its_missions_says_so() -> None:
     assert account.left_out() == []
 
 
-def test_a_question_is_answered_once_and_by_what_is_shown() -> None:
+def test_a_question_is_answered_once_and_by_what_is_shown(day: Any) -> None:
     sent: list[str] = []
     speech = m.SpeechStatus(state="speaking", goal_id="q.1")
     objects = {"red box": {"position": [1.0, 2.0, 0.8]}, "red can": {"position": [3.0, 2.0, 0.8]}}
-    day: Any = object.__new__(Day)
-    day._answered = ""
     day.link = SimpleNamespace(
         latest=lambda topic: speech,
         query=lambda topic: {"objects": objects},
