@@ -24,7 +24,7 @@ PING, PONG = topics.NAVIGATION_GOAL, topics.NAVIGATION_STATUS
 
 
 def echo(connect: str, namespace: str, raw: bool) -> None:
-    """The other side: answers until it is ended."""
+    """The answering process: answers every message until it is ended."""
     with open_session(connect, namespace) as session:
         publisher = session.declare_publisher("raw/pong") if raw else Publisher(session, PONG)
 
@@ -41,7 +41,7 @@ def echo(connect: str, namespace: str, raw: bool) -> None:
 
 
 def rounds(here: Site, raw: bool) -> list[float]:
-    """Seconds of each round trip."""
+    """Durations [s] of the round trips."""
     command = [sys.executable, "-m", "bench.bus", "--echo", here.connect, here.namespace, str(int(raw))]
     here.processes.append(subprocess.Popen(command))
     times: list[float] = []

@@ -85,7 +85,7 @@ def _clock(seconds: float) -> Iterator[Sent]:
 
 
 def play(connect: str, file: Path, first: int, number: int) -> None:
-    """Be `number` robots from the Unix time that stdin says; prints how many probes came and how late [s], as JSON."""
+    """Play `number` robots from the Unix time given on stdin; prints the number and delays [s] of probes as JSON."""
     script = msgspec.json.decode(file.read_bytes(), type=list[Sent])
     late: list[float] = []
 

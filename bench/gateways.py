@@ -1,4 +1,4 @@
-"""What the gateways to ROS 2 and Foxglove cost while nobody listens, and with a listener, in parts of a core.
+"""CPU time of the gateways to ROS 2 and Foxglove with and without a listener, as shares of a core.
 
 The simulation runs in real time beside them; CPU time is of the gateway's process alone. A ROS listener takes
 `joint_states`, `tf`, `scan` and `odom`; a visitor of Foxglove the same and the scene.

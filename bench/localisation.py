@@ -129,7 +129,7 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
 
 
 def carried(seed: int) -> list[tuple[str, float]]:
-    """PLACES times in one home: found, unnoticed, wrong or lost, and after how long [s]."""
+    """Kidnap the robot PLACES times in one home: found, unnoticed, wrong or lost, and after how long [s]."""
     case = aged(seed)
     assert case.scene is not None
     robot, rng = Driver(case.scene, seed), np.random.default_rng([seed, 3])

@@ -1,4 +1,4 @@
-"""Does anything leak when services are killed again and again? `python -m bench.restarts --restarts 1000`.
+"""Leaks of services that are killed again and again: `python -m bench.restarts --restarts 1000`.
 
 A whole robot under its supervisor. Half of the services is killed with SIGKILL, all at once, until each has come back
 N times, while the others live on; then the other half. Before and after each half everything that could have leaked
@@ -36,7 +36,7 @@ HANDLES, SHARE, MEGABYTES = 4, 0.2, 25.0
 
 
 class Count(msgspec.Struct):
-    """What can leak, at one moment: handles and memory [MB] by process, everything else in sum."""
+    """A count of what can leak: handles and memory [MB] by process, everything else in sum."""
 
     processes: int = 0
     strays: int = 0
@@ -121,7 +121,7 @@ def eventually(probe: Callable[[], bool], what: str, supervision: Supervision) -
 
 
 def leaks(before: Count, after: Count, killed: Sequence[str]) -> list[str]:
-    """What there is more of than there was; of those that lived on also handles and memory."""
+    """What has grown between two counts; handles and memory only of processes that lived on."""
     found = [
         f"{field}: {was} -> {now}"
         for field in ("processes", "strays", "listening", "connections", "half_closed", "shared", "tokens")
@@ -147,7 +147,7 @@ def show(before: Count, after: Count, killed: Sequence[str]) -> None:
 
 
 def settled(robot: Robot, killed: Sequence[str], before: Count | None = None) -> Count:
-    """Counted when connections and tokens of the dead are gone, or when that takes too long."""
+    """A count taken once connections and tokens of the dead are gone, or after waiting too long for that."""
     end = time.monotonic() + 4 * CALM
     time.sleep(CALM)
     while True:

@@ -47,7 +47,7 @@ TOLD = (
 
 
 class Day:
-    """Missions one after the other, and what becomes of them."""
+    """Runs one mission after the other and keeps the account."""
 
     def __init__(self, robot: Robot, world: Scene, seed: int) -> None:
         self.robot, self.world, self.account = robot, world, Account()
@@ -82,7 +82,7 @@ class Day:
 
     # --- at the start
     def tell(self) -> list[str]:
-        """Name a room and tell a rule; what was not kept."""
+        """Name a room and tell a tidying rule; returns what the robot did not keep."""
         to = next(r.name for r in self.world.receptacles if r.spawn and not r.depth)
         rule = m.TidyRule(things="mugs", to=[to], kinds=["mug"])
         wrong = []
@@ -134,7 +134,7 @@ class Day:
         print(f"{self.now / 60:7.1f} min  {number:4d}  {command}: {name}{why}", flush=True)
 
     def answer(self, thing: str, state: m.BrainState) -> None:
-        """Say what somebody who wants the thing says, once to each question that the robot listens for an answer to."""
+        """Answer the robot's question once, as somebody who wants the thing does."""
         speech = self.link.latest(topics.SPEECH_STATUS)
         if speech is None or speech.state != "listening" or speech.goal_id == self._answered:
             return
@@ -174,13 +174,13 @@ class Day:
             sleep(0.5)
 
     def rest(self, until: float) -> None:
-        """Nobody wants anything until that robot time [s]."""
+        """Let robot time pass until `until` [s], with nothing asked."""
         while self.now < until:
             sleep(1.0)
 
     # --- at the end
     def faults(self) -> list[str]:
-        """What is not as it should be."""
+        """What failed in the day, in words."""
         wrong = [f"false claim: {claim}" for claim in self.account.false]
         rows = self.link.query(topics.BRAIN_MISSIONS)
         kept = {row["id"]: row["outcome"] for row in rows}

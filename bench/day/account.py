@@ -1,4 +1,4 @@
-"""What became of a day: missions by outcome, and what memory and files grew by. Pure."""
+"""The account of a day: missions by outcome, and the growth of memory and files. Pure."""
 
 import msgspec
 
@@ -36,12 +36,12 @@ class Account(msgspec.Struct):
         return {name: (first[name], mb) for name, mb in last.items()}
 
     def left_out(self) -> list[str]:
-        """Missions, and what was to happen in them, for which the day was too short."""
+        """The missions and disturbances for which the day was too short."""
         done = sum(self.outcomes.values())
         return [f"{self.planned - done} of {self.planned} missions had no time"] if done < self.planned else []
 
     def excess(self) -> list[str]:
-        """What grew beyond its bounds."""
+        """Processes and files that grew beyond their bounds, in words."""
         found = [
             f"{name}: {first:.0f} -> {last:.0f} MB"
             for name, (first, last) in self.grown().items()

@@ -24,7 +24,7 @@ RECORDED = 60
 
 
 class Robot:
-    """The processes of the day; they come and go, directory and simulated world stay."""
+    """The robot of the day; its processes come and go, its directory and simulated world stay."""
 
     def __init__(self, directory: Path, world: Scene, home: Scene, seed: int, speed: str) -> None:
         self.directory = directory

@@ -1,4 +1,4 @@
-"""Is a seed's run the same every time, in one process and with every process real?
+"""Determinism: whether a seed's run is the same every time, in one process and with every process real.
 
 `python -m bench.determinism --seed 3 --runs memory,memory,processes,processes`; exit 1 when a trajectory differs.
 With MUJOCO_GL=disable in the environment pictures are cast, which takes longer.

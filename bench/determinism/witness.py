@@ -40,7 +40,7 @@ class WitnessConfig(Config, frozen=True):
 
 
 class Sight(msgspec.Struct, array_like=True):
-    """One message: when it became visible, on which key, its fingerprint, and the text of what is no stream."""
+    """One message: its tick and key, its fingerprint, and its text unless it is of a stream."""
 
     tick: int
     key: str
@@ -49,7 +49,7 @@ class Sight(msgspec.Struct, array_like=True):
 
 
 class Trace(msgspec.Struct):
-    """A whole run: the hash of every physics state and joint state, and every message on the way."""
+    """A whole run: a hash of all physics and joint states, and all messages."""
 
     hash: str
     ticks: int
@@ -58,7 +58,7 @@ class Trace(msgspec.Struct):
 
 
 class WitnessService:
-    """Sees everything a tick after it was published, as every participant does."""
+    """Subscribes to everything, a tick after it was published, as every participant does."""
 
     NAME = "witness"
     HZ = 100

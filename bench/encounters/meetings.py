@@ -1,4 +1,4 @@
-"""Meetings of two robots in one flat, drawn: who starts where and wants to go where."""
+"""Random meetings of two robots in one flat: starts and goals."""
 
 import math
 from collections.abc import Callable
@@ -26,7 +26,7 @@ DOORS = (
 
 @dataclass(frozen=True)
 class Meeting:
-    """Who starts where and goes where; a goal of None: it stands there with nothing to do."""
+    """Starts and goals of two robots; a goal of None: the robot has nothing to do."""
 
     home: Household
     starts: tuple[Pose2, Pose2]
@@ -96,7 +96,7 @@ def anywhere(rng: np.random.Generator) -> Meeting:
 
 
 def swapped(rng: np.random.Generator) -> Meeting:
-    """Each wants to where the other is."""
+    """A meeting in which each robot goes to where the other one is."""
     guide = Guide(APARTMENT)
     while True:
         one, two = guide.anywhere(rng), guide.anywhere(rng)
@@ -105,7 +105,7 @@ def swapped(rng: np.random.Generator) -> Meeting:
 
 
 def idle(rng: np.random.Generator) -> Meeting:
-    """One stands in a door with nothing to do, the other wants through."""
+    """A meeting in which one robot stands in a door with nothing to do and the other wants through."""
     guide, (a, b) = Guide(APARTMENT), DOORS[int(rng.integers(len(DOORS)))]
     middle = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
     driver = guide.near(rng, a, 0.4), guide.near(rng, b, 0.6)

@@ -131,7 +131,7 @@ class Pair:
             self._world.advance()
 
     def run(self) -> Outcome:
-        """Drive it to its end."""
+        """Run the meeting to its end."""
         outcome = Outcome()
         took: dict[int, float | None] = {}
         begun: dict[int, float] = {}

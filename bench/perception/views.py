@@ -39,7 +39,7 @@ class Looked(NamedTuple):
 
 
 def stand(rng: np.random.Generator, scene: Scene, placement: Placement) -> Pose2 | None:
-    """A place before the furniture of an object, roughly facing it; None when that is in another room."""
+    """A base pose before the furniture of an object, roughly facing it; None when that is in another room."""
     r = scene.receptacle(placement.on)
     assert r is not None
     x, y = _before(rng, r)
@@ -105,7 +105,7 @@ def look_at(
 
 
 def visible(view: View, placement: Placement) -> bool:
-    """Its centre is in the picture, not far, and nothing stands before it."""
+    """True when the object's centre is in the picture, near and not occluded."""
     u, v, z = (float(a) for a in view.project(np.array([placement.position]))[0])
     h, w = view.shape
     if not (MARGIN < u < w - MARGIN and MARGIN < v < h - MARGIN and 0.0 < z < RANGE):
