@@ -213,5 +213,5 @@ def mentions(words: str, scene: Scene) -> list[tuple[str, str]]:
     """(`thing` or `surface`, name) in the order in which a plain sentence names them."""
     names = {plain(o.name): ("thing", o.name) for o in scene.objects}
     names |= {plain(r.name): ("surface", r.name) for r in scene.receptacles}
-    alternatives = "|".join(re.escape(n) for n in sorted(names, key=len, reverse=True))
+    alternatives = "|".join(re.escape(n) for n in sorted(names, reverse=True))
     return [names[found[0]] for found in re.finditer(rf"\b(?:{alternatives})\b", words)]

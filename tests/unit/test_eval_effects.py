@@ -12,7 +12,7 @@ from evaluation.suites.commands import ALL, TALKS, TASKS, commands
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.effects import (
-    AT_PLACE,
+    AT_FURNITURE, AT_PLACE,
     BESIDE,
     DRIVEN,
     HAND_CLOSED,
@@ -303,6 +303,10 @@ def test_what_is_said_before_anything_was_seen_answers_nothing() -> None:
 def test_at_a_place_is_as_near_as_its_limit() -> None:
     home = SCENE.home
     assert at(SCENE, home.name, home.x + AT_PLACE, home.y) and not at(SCENE, home.name, home.x, home.y + 3.0)
+    block = msgspec.structs.replace(
+        SCENE.receptacles[0], name="block", center=(0.0, 0.0, 0.5), size=(2.0, 2.0), yaw=0.0
+    )
+    assert at(msgspec.structs.replace(SCENE, receptacles=(block,)), "block", 1.0 + AT_FURNITURE, 0.0)
 
 
 def test_of_two_names_the_longer_is_meant() -> None:
