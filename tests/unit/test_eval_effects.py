@@ -12,7 +12,8 @@ from evaluation.suites.commands import ALL, TALKS, TASKS, commands
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.effects import (
-    AT_FURNITURE, AT_PLACE,
+    AT_FURNITURE,
+    AT_PLACE,
     BESIDE,
     DRIVEN,
     HAND_CLOSED,
