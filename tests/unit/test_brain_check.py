@@ -93,6 +93,24 @@ def test_a_vessel_that_lay_stands_when_it_is_seen_to_be_open_above(
 
 
 @pytest.mark.parametrize(
+    ("before", "high", "now", "fault"),
+    [
+        (LYING, 0.07, "irregular", "UNTOLD"),
+        (LYING, 0.19, "irregular", ""),
+        (LYING, 0.07, "round", ""),
+        (0.0, 0.07, "irregular", ""),
+    ],
+)
+def test_what_lay_and_has_no_shape_now_is_as_high_as_it_was_long(
+    before: float, high: float, now: m.ShapeFamily, fault: str
+) -> None:
+    unlisted, asked = msgspec.structs.replace(SCENE, things=()), "black bottle"
+    rest = rested(pose(label=asked, tilt=before, size=(0.2, 0.07, 0.07)), asked, unlisted, None, "long")
+    seen = pose(label=asked, size=(0.2, 0.07, high))
+    assert judge_placement(seen, asked, "delivery tray", unlisted, rest=rest, shape=now).fault == fault
+
+
+@pytest.mark.parametrize(
     ("asked", "size", "fault"),
     [
         ("the green box", (0.19, 0.13, 0.05), "TOPPLED"),

@@ -21,6 +21,8 @@ UPSIDE_DOWN = 2.4
 FELL, FELL_SHARE = 0.025, 0.25
 """By how much [m], and by what share of its height, something that was asked for by no known kind is lower when it fell
 over. Chosen: four times the error of a measured height."""
+AS_HIGH = 0.85
+"""Height by its length as it lay up to which what has no shape is not known to stand. Chosen: a tenth is the error."""
 TURNED: tuple[ShapeFamily, ...] = ("round", "bowl")
 """Shapes that are the same from wherever one looks, as long as they stand."""
 OBLONG = 1.5
@@ -54,7 +56,8 @@ class Rest(msgspec.Struct, frozen=True):
 
     `asked`: the kind that it was asked for as, `taken`: the one that it was taken for; "" for none. `stood`: its height
     [m] as it stood, 0 if it lay, `shape` how it was measured; `lay`: it has lain at some time, and may have been stood
-    on its head since; `opening`: as it lay its opening was seen, so that the hand knew which end belongs above.
+    on its head since; `opening`: as it lay its opening was seen, so that the hand knew which end belongs above;
+    `length`: its longest extent [m] as it lay.
     """
 
     asked: str = ""
@@ -63,6 +66,7 @@ class Rest(msgspec.Struct, frozen=True):
     lay: bool = False
     shape: ShapeFamily = ""
     opening: bool = False
+    length: float = 0.0
 
 
 def rested(
@@ -77,10 +81,11 @@ def rested(
     with that upper end, before a grasp."""
     asked, taken = kind_meant(item, household), kind_meant(pose.label, household)
     lay = _over(asked or taken, pose)
-    opening = lay and top == "open"
+    opening, length = lay and top == "open", max(pose.size) if lay else 0.0
     if before is not None:
-        return msgspec.structs.replace(before, lay=before.lay or lay, opening=opening)
-    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay, shape, opening)
+        longest = max(length, before.length)
+        return msgspec.structs.replace(before, lay=before.lay or lay, opening=opening, length=longest)
+    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay, shape, opening, length)
 
 
 def judge_placement(
@@ -125,8 +130,10 @@ def judge_placement(
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
     untold = not top and not rest.opening if vessel else alike and any(not kind.ends_alike for kind in stands)
-    if lay and untold and not in_bin:
-        words = f"I cannot tell whether the {label} {where} stands on its head"
+    # What no shape explains tells of no tilt.
+    untold |= shape == "irregular" and pose.size[2] < AS_HIGH * rest.length
+    if stands and lay and untold and not in_bin:
+        words = f"I cannot tell whether the {label} {where} stands as it should"
         return Finding("UNTOLD", words, measured)
     unknown = not rest.asked and spec is None and not stands
     lower = unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood)
