@@ -65,8 +65,8 @@ class CameraModel:
         self._count = 0
 
     def learn(self, image: m.Rgbd) -> None:
-        """Take a picture from another heading, to learn which pixels show the robot itself."""
-        depth = depths(image)
+        """Take a picture from another heading, to learn which pixels show the robot itself; raises as `read`."""
+        depth = _checked(image)
         near, far = np.where(depth > 0, depth, np.inf), np.where(depth > 0, depth, -np.inf)
         if self._nearest is None or self._nearest.shape != depth.shape:
             self._nearest, self._farthest, self._count = near, far, 1
@@ -96,10 +96,7 @@ class CameraModel:
         Raises:
             PictureError: its data do not have its size, or what a camera does not have.
         """
-        depth = depths(image)
-        numbers = (image.cx, image.cy, *image.position, *image.orientation)
-        if not (0.0 < image.fx < MAX_VALUE and 0.0 < image.fy < MAX_VALUE and all(abs(v) < MAX_VALUE for v in numbers)):
-            raise PictureError("a picture without a focal length or a pose")
+        depth = _checked(image)
         depth = np.where(self.own(depth.shape), 0.0, depth)
         points = (rays(image) * depth[..., None]) @ quat_matrix(image.orientation).T + np.array(image.position)
         # What is where the base stands is the robot, whatever the mask of its own pixels has missed at the arm's rim.
@@ -112,6 +109,14 @@ class CameraModel:
         low = seen & (height < 0.6) & (depth < 2.0)
         level = _level(points, seen & (depth < LEVEL_FAR) & (height > LOW) & (height < HIGH))
         return Picture(*(_merged(p) for p in (points[floor][:, :2], points[above], points[level], points[low])))
+
+
+def _checked(image: m.Rgbd) -> NDArray[np.float32]:
+    """Depth (h, w) [m] of a picture; raises `PictureError` for one without a focal length, a pose or all its pixels."""
+    numbers = (image.cx, image.cy, *image.position, *image.orientation)
+    if not (0.0 < image.fx < MAX_VALUE and 0.0 < image.fy < MAX_VALUE and all(abs(v) < MAX_VALUE for v in numbers)):
+        raise PictureError("a picture without a focal length or a pose")
+    return depths(image)
 
 
 def _level(points: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -94,7 +94,7 @@ def test_nonsense_is_dropped(tmp_path: Path) -> None:
         bad.id, bad.t = msgspec.json.decode(robot.requests[-1])["id"], robot.now
         robot.bus.send(topics.HEAD_RGBD, bad)
         robot.step(0.3)
-    assert robot.io.drops[topics.HEAD_RGBD.key], "a picture without a focal length counts once the camera is known"
+    assert robot.io.drops[topics.HEAD_RGBD.key]
     for t in (float("nan"), float("inf"), -5.0):
         robot.bus.send(topics.ODOMETRY, m.Odometry(t=t, x=float("nan"), y=1e30, theta=0.0))
         robot.bus.send(topics.SCAN, m.LaserScan(t=t, ranges=np.full(3, np.nan, "<f4").tobytes()))

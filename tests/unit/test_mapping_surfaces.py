@@ -10,6 +10,7 @@ from common import messages as m
 from common.approach import FOOTPRINT
 from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 from common.geometry import matrix_quat
+from common.robot.pictures import PictureError
 from services.mapping.barriers import BEFORE, Met, glass, panes, shut
 from services.mapping.depth import CameraModel
 from services.mapping.grid import RESOLUTION, Grid
@@ -131,6 +132,17 @@ def room(grid: Grid, half: float = 2.0) -> None:
     for _ in range(3):
         grid.add_scan(scan, (0.0, 0.0, 0.0))
         grid.add_picture(floor, np.empty((0, 3)))
+
+
+@pytest.mark.parametrize(("field", "value"), [("fx", 0.0), ("fy", float("nan")), ("depth", b"12")])
+def test_a_picture_that_cannot_be_read_teaches_nothing_of_the_camera(field: str, value: object) -> None:
+    """Kept until the camera is known it would be found bad then, and take those that wait with it."""
+    bad = image()
+    setattr(bad, field, value)
+    model = CameraModel()
+    for use in (model.learn, model.read):
+        with pytest.raises(PictureError):
+            use(bad)
 
 
 def test_cells_are_free_where_both_sensors_say_so() -> None:
