@@ -100,7 +100,11 @@ _BEHIND = re.compile(
 _PURPOSE = re.compile(
     r"(?:\s*[,.;?!]+)?\s+(?:because |since |as |so (?:that )?)?(?:(?:i|we) (?:really |just |still )*"
     r"(?:want|need|have(?: got)?|would like|am (?:about|going)|are (?:about|going)|wish|intend|plan) to "
-    r"(?!(?:have|get|see|know|hear|be|go|put|take|bring|use|borrow)\b)"
+    r"(?!(?:have|get|see (?:whether|if|what|where|how|you|it)|know|"
+    r"hear|be|go|put|take|bring|use|borrow)\b)"
+    r"|so (?:that )?(?:i|we) (?:can |will |may |do not |could )?"
+    r"(?:see|find|remember|have|know|forget|miss|lose|notice|use) "
+    r"(?:it|them|that)\b"
     r"|it is (?:high |about )?time (?:(?:for (?:me|us|\w+) )?to|(?:i|we)) |(?:he|she|they|mum|dad|(?:my|our|the) \w+) "
     r"(?:(?:really |just |still )*(?:wants?|needs?|ha(?:s|ve)(?: got)?|would like|(?:is|are) (?:about|going)) to "
     r"|asked for it|(?:is|are) (?:waiting|asking) for (?!you\b)))(?!.*\b(?:you|robot|instead)\b)[^.;?!,]*[.!\s]*$"

@@ -44,6 +44,8 @@ _BUT_FIRST = re.compile(
     r"^(?P<second>.+?),? but (?:first|before (?:that|you do(?: (?:that|it|so))?|doing (?:that|it|so))|beforehand),? "
     r"(?P<first>.+)$"
 )
+_FIRST_AFTER = re.compile(r"^(?P<first>first(?:ly)? .+?),? (?:and )?after(?: that| this)?,? (?=you\b)")
+"""`first you go to the kitchen, after you come back`: one after the other in the order in which they are said."""
 _LATER = re.compile(
     r"^(?P<first>.+?),? (?P<word>before|after|once|when|as soon as) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$"
 )
@@ -108,6 +110,13 @@ _NOTED_BEHIND = re.compile(
     r"[ ,.!]*(?:please)?$"
 )
 """A statement of where things belong that is to be kept."""
+_HEADING = re.compile(
+    r"^(?:(?:please|can you|could you|would you|now|so) )*(?:tidy|clear|clean|sort|empty)(?: up| off| out)? "
+    r"(?:the|my|our) \w+(?: \w+)?: (?!(?:both|all|each|every\w*|the lot|it all) )"
+    r"(?=[^.]*\b(?:goes?|belongs?|to|onto|into) (?:on |in |to )?(?:the|my|our)\b)",
+    re.IGNORECASE,
+)
+"""What is to be done as a whole, before its parts are told one by one."""
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
@@ -115,7 +124,7 @@ _NEXT = frozenset(
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
-    text = put_where_labelled(text, is_place)
+    text = put_where_labelled(_HEADING.sub("", text), is_place)
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
     told = with_preamble(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:")), is_place)
     whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
@@ -150,6 +159,8 @@ def _in_order(text: str) -> list[str]:
             return [other, one] if found["word"] == "before" else [one, other]
     if (found := _BUT_FIRST.match(bare)) and verb_first(found["first"]):
         return [found["first"], found["second"]]
+    if found := _FIRST_AFTER.match(text):
+        return [found["first"], text[found.end() :]]
     if (found := _LATER.match(bare)) and verb_first(found["second"]):
         first, second = found["first"], _with_infinitive(found["second"])
         return [first, second] if found["word"] == "before" else [second, first]

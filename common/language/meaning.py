@@ -33,6 +33,8 @@ WORDS: frozenset[str] = frozenset[str]().union(
     *(words_of(p.tree) for w, p in _RULES if w not in REFUSALS), OF_ITSELF, DETERMINERS, WHICH, SIDES, *SMALL
 )
 """Words of the wordings that ask for something and between nouns: all but names and colours."""
+REFUSED: frozenset[str] = frozenset[str]().union(*(words_of(p.tree) for w, p in _RULES if w in REFUSALS))
+"""Words of the wordings that ask for what the robot cannot do."""
 
 
 def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:

@@ -109,6 +109,32 @@ SHORTER = tuple(
         ),
         (r"\bgive (?:me|us|everyone|everybody) a (?:shout|yell|holler|heads-up|heads up) (?=that\b)", "say "),
         (r"\b(?:sing|call|shout|yell) out (?=that\b)", "say "),
+        (r"\b(?:what|who|which) all\b", "what"),
+        (r"^(?:well,? |oh,? )?it does not matter,? (?:then |just )?(?=\w)", ""),
+        (r"\b(the|my) ((?:\w+ )?\w+)'s (?:place|home|spot) is (?:on |in |at )?(?=the |my )", r"\1 \2 belongs on "),
+        (r"\bthe (?:place|home|spot) (?:of|for) ((?:the|my) (?:\w+ )?\w+) is (?:on |in |at )?(?=the |my )",
+         r"\1 belongs on "),
+        (r"^(how many .+?) (?:did|do|could) you (?:see|find|notice|spot)\b", r"\1 are there"),
+        (r"^did you (?:see|notice|spot|find|come across) (?=(?:the|my|our|any|an?)\b)", "have you seen "),
+        (r"(?<=\w) when you (?:were|went|passed) (?=(?:in|on|at|by)\b)", " "),
+        (
+            r"^(?:and )?do(?:es)? ((?:the|my) (?:\w+ )?\w+) (?:still )?(?:stand|lie|sit|hang|live) "
+            r"(?=(?:on|in|at|by|next)\b)",
+            r"is \1 still ",
+        ),
+        (r"\b(call|name) (.+?) from (?:now|today) on[.!]?$", r"\1 \2"),
+        (
+            r"^(?:what (?:i|we) (?:told you|said) about|(?:that|the) (?:business|thing) (?:about|with)|"
+            r"(?:the|your|that) rules? (?:about|for|with|on))(?: where)? (?:the )?(\w+)\b.*?\b"
+            r"(?:forget|do not follow|no longer|not apply|ignore|drop|not valid|cancel\w*)\b.*$",
+            r"forget the rule about \1",
+        ),
+        (
+            r"^(?:i|we) (?:do not|no longer) (?:need|want|use|like) the name (.+?)(?: any ?more)?"
+            r"(?:[,.;]? (?:so )?(?:please )?forget (?:it|that name|that))?[.!]?$",
+            r"forget the name \1",
+        ),
+        (r"[,.;] (?:so )?both(?: of them)? (?=(?:in|into|to|on|onto) (?:the|my|our)\b)", ". put them "),
         (
             r"\b(?:take|carry|bring|move) ((?:the|my) \w+(?: \w+)?) (?:through |over |along |across )?"
             r"(?:to|into) the (\w+)(?: room)? and "

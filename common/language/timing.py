@@ -31,8 +31,19 @@ _REMIND = re.compile(
     rf"(?: {_LATER})?)?,? (?:to|that|about) (?P<what>.+?)(?: (?:in|after) (?P<last>{DURATION})(?: {_LATER})?)?$"
 )
 """What somebody is to be told after a while."""
+_YOU = re.compile(r"^you (?:can |could |should |will |may )?")
 _TELL = re.compile(r"^tell me that ")
 _WAKE = re.compile(rf"^wake (?:me|us)(?: up)? (?:in|after) (?P<time>{DURATION})(?: {_LATER})?$")
+_SPOKEN = re.compile(
+    r"\b(?:say|tell|announce|let \w+ know)\b.*\b(?:i|we|he|she|it|they|dinner|lunch|food|mum|dad)\b "
+    r"(?:am|is|are|will|shall|leave)\b"
+)
+"""A speech with a sentence in it, to which a time at the end belongs."""
+_TOLD = re.compile(
+    rf"^(?P<told>(?:i|we|he|she|it|they|there|my \w+|the \w+)\b(?! (?:wants?|needs?|would|must|should)\b)[^,.]+), "
+    rf"(?=(?:in|after) {DURATION}\b)"
+)
+"""What is told before a command for later."""
 _OURS = re.compile(r"\b(?:my|our)\b")
 _PASS = re.compile(rf"^(?:let|allow|do not move)(?: for)? (?P<time>{DURATION})(?: (?:to )?(?:pass|go by|elapse))?$")
 _STAY = re.compile(
@@ -52,6 +63,8 @@ def in_time(text: str) -> str:
         going = f"go {found['to']}" if found["to"] else f"go to{_place(found['place'])}"
         rest = re.sub(r"^(?:,| and| then)+ ?", "", found["rest"] or "")
         return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
+    if (told := _TOLD.match(bare)) and (rest := in_time(bare[told.end() :])) != bare[told.end() :]:
+        return f"{told['told']} . {rest}"
     if (found := _REMIND.match(bare)) and (time := found["first"] or found["time"] or found["last"]):
         return f"wait {_plain(time)} . say {_OURS.sub('your', found['what'])}"
     if found := _WAKE.match(bare):
@@ -59,9 +72,11 @@ def in_time(text: str) -> str:
     if found := _PASS.match(bare):
         return f"wait {_plain(found['time'])}"
     for pattern in (_FIRST, _JUST, _LAST):
-        if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
+        if (found := pattern.match(bare)) and verb_first(rest := _YOU.sub("", without_politeness(found["rest"]))):
+            if pattern is _LAST and _SPOKEN.search(rest):
+                continue
             time = next(filter(None, map(found.groupdict().get, ("time", "later", "passed"))))
-            return f"wait {_plain(time)} . {_TELL.sub('say ', found['rest'])}"
+            return f"wait {_plain(time)} . {_TELL.sub('say ', rest)}"
     return text
 
 

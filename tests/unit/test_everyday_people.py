@@ -47,6 +47,31 @@ from evaluation.everyday.understanding import understand
         ("-", "When forty-five minutes are up, sing out that the cake's done.", "wait(2700); say(the cake's done)"),
         ("-", "One minute from now bring me the apple, not sooner.", "wait(60); fetch(apple)"),
         ("-", "In a quarter of an hour give me a shout that the pie's done.", "wait(900); say(the pie is done)"),
+        ("-", "I go to sleep now, in eight minutes please go to your home.", "wait(480); return()"),
+        (
+            "-",
+            "go to the kitchen and tell mum im coming in five minutes",
+            "goto(kitchen); say(im coming in five minutes)",
+        ),
+        ("-", "First you go in kitchen, after you come back here.", "goto(kitchen); return()"),
+        # What is named in a speech, as a purpose, or only tells where something stands.
+        ("-", "Go to the study and say dinner is on the table.", "goto(study); say(dinner is on the table)"),
+        ("-", "Put my notebook next to the white mug so I see it tomorrow.", "put(notebook, desk near white mug)"),
+        ("-", "There should be a cloth next to the blue bottle, bring it here please.", "fetch(cloth)"),
+        ("-", "I'm on nights this week and can't find my badge, could you look for it?", "find(badge)"),
+        (
+            "-",
+            "Please clear my desk: the white mug goes on the counter and the vitamin box on the bedside table.",
+            "put(white mug, counter) & put(orange box, bedside table)",
+        ),
+        # Rules, names and questions in other words.
+        ("-", "From now on the white mug's place is the desk.", "rule(white mug, desk)"),
+        ("-", "The rule about the cans no longer applies, you can forget it.", "norule(cans)"),
+        ("-", "I don't need the name vitamin box any more, please forget it.", "forget(vitamin box)"),
+        ("-", "Does the blue bottle still stand on the counter?", "answer(counter)"),
+        ("-", "How many bottles did you see?", "answer(3)"),
+        ("-", "Can you cook the soup for us?", "refuse()"),
+        ("busy:find a screwdriver", "No rush, mate.", "none()"),
         # All but one, and one for the other.
         (
             "-",

@@ -21,7 +21,8 @@ AFTER_DOING = re.compile(
 )
 """Before words about the command under way, behind which the next one is to come."""
 INSTEAD = re.compile(
-    r"^(?:no|whatever you are doing|(?:drop|leave|stop) everything(?=,? and\b|,)|before you (?:go on|carry on|continue|"
+    r"^(?:no(?! (?:rush|hurry|worries|problem|pressure|stress|need|matter|thanks|time)\b)|"
+    r"whatever you are doing|(?:drop|leave|stop) everything(?=,? and\b|,)|before you (?:go on|carry on|continue|"
     r"do that|do it|finish)(?: with (?:that|it|this))?|"
     r"stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
     r"wait(?! (?:for|here|there|in|at|by|on|until|till)\b)|sorry|"

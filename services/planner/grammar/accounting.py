@@ -25,6 +25,10 @@ _TOLD_APART = re.compile(
 )
 """Behind these stand things that tell which one is meant, or is not; none of them is in the plan."""
 
+_SPEECH = re.compile(
+    r"(?<=\w) (?:say|tell|announce)\b(?: (?:that|to|them))? (?!.*\b(?:bring|fetch|put|take|go|come)\b).+$"
+)
+"""The words of a speech behind another command, in which things and places may be named."""
 _TELLS_WHY = re.compile(
     r"^(?:the|this|that|these|those|my|our) (?:\w+ ){1,3}?"
     r"(?:is|are|was|were|has|have|will|does|do|needs?|looks?|keeps?)\b"
@@ -44,6 +48,8 @@ def unaccounted(clauses: Sequence[str], steps: Sequence[PlanStep], world: World,
         for clause in clauses
         if not is_question(clause) and not clause.startswith("say ") and (alone or not _TELLS_WHY.match(clause))
     ]
+    if any(s.action == "say" for s in steps):
+        meant = [_SPEECH.sub("", clause) for clause in meant]
     asked = [_asked(clause, trace.certain).split() for clause in meant]
     definite = [tuple(words) for words in asked if words and words[0] not in CONDITIONS and "or" not in words]
     return [word for words in definite for word in trace.missing(words)]

@@ -7,7 +7,7 @@ from common.language.clauses import cut_clauses
 from common.language.contractions import expand
 from common.language.discourse import commands
 from common.language.lexicon import COMMANDING
-from common.language.meaning import VERBS, WORDS
+from common.language.meaning import REFUSED, VERBS, WORDS
 from common.language.normalise import Words, normalise
 from common.messages import PlanStep
 from services.planner.choice_points import ChoicePoints
@@ -173,7 +173,7 @@ class Attempts:
         words = self._command_words().split()
         bare = [w.strip(",;.!?") for w in words]
         colours, names = self._vocabulary.words()
-        right, named = corrected(bare, colours | WORDS, names)
+        right, named = corrected(bare, colours | WORDS, names, REFUSED)
         text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
         if right == bare:
             right, named = renamed(bare, self._vocabulary.names(), colours, names), True

@@ -18,6 +18,12 @@ _PLACED = re.compile(
 )
 """A thing, and where it is said to be."""
 
+_BESIDE = re.compile(
+    r"there (?:is|are|was|were|(?:should|must|might|may|could|ought to|has to)(?: still)? be) "
+    r"((?:the|my|a|an|our|some) (?:\w+ ){0,2}?\w+)(?: lying| standing| somewhere)* (?:next to|beside|near|by|close to) "
+)
+"""A thing, and beside what it is said to be."""
+
 _EXPECTED = re.compile(
     r"\b(?:(?:should|must|might|may|could|will|ought to)(?: still| probably)? be|"
     r"(?:is|are) (?:probably|likely|usually))(?: \w+)? (?:on|in|at|by) "
@@ -58,6 +64,10 @@ def note(words: Words, builder: PlanBuilder) -> None:
         with suppress(Refusal):
             speak_of(builder, referents(builder, (*placed[1].split(), "on", *placed[2].split())))
             return
+    if beside := _BESIDE.match(" ".join(words)):  # "there should be a cloth next to the bottle"
+        with suppress(Refusal):
+            speak_of(builder, referents(builder, tuple(beside[1].split())))
+        return
     things, spots = named(words, builder.vocabulary, unlisted=builder.vocabulary.new_nouns)
     if things and not (words[:1] == ("there",) and _goes_on(things[-1], words, builder)):
         with suppress(Refusal):

@@ -25,15 +25,17 @@ VERY_LONG = 9
 """Letters from which on two slips are forgiven (chosen)."""
 
 
-def corrected(words: Sequence[str], plain: Iterable[str], names: Iterable[str]) -> tuple[list[str], bool]:
+def corrected(
+    words: Sequence[str], plain: Iterable[str], names: Iterable[str], spelled: Container[str] = ()
+) -> tuple[list[str], bool]:
     """(words with slips undone, whether a name was changed). `plain`: verbs, colours and words between; `names`: nouns.
 
-    A word that is known stays, and so does one that is near several.
+    A word that is known stays, and so do one that is near several and the words of `spelled`, which are no slips.
     """
     common, nouns = set(plain), set(names)
     found, named = [], False
     for word in words:
-        if word in common or word in nouns or not word.isalpha() or len(word) < 3:
+        if word in common or word in nouns or word in spelled or not word.isalpha() or len(word) < 3:
             found.append(word)
             continue
         near = _alike(word, common | nouns) or _nearest(word, common - nouns)
