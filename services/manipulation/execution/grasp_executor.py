@@ -140,6 +140,9 @@ def _execute_grab(
         check_width(robot, plan, widths)
         way.append(whole(plan.carry))
         yield from _carry(robot, plan)
+        if plan.doubt and not plan.grasp.rim:
+            # What has turned as the hand did, and stays so, is as well held as what turned when it came off.
+            held = settled(robot.grip, held, config)
         check_hold(robot, plan, held, widths)
     except Failure as failure:
         if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY, BLOCKED) and robot.grip.holds():
