@@ -57,6 +57,14 @@ def test_a_block_on_the_floor_is_one_object(seed: int, ahead: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
+def test_what_lies_before_furniture_is_seen_whole(seed: int) -> None:
+    front = PLACE[0] + 1.2 + 0.03 + 0.06
+    plan = msgspec.structs.replace(SCENE, furniture=(Box("chest", (front + 0.2, PLACE[1], 0.4), (0.4, 1.0, 0.8)),))
+    (found,) = segments(floor(seed, 0.06), plan, 3.5)
+    assert np.ptp(found.points[:, 0]) > 0.05
+
+
+@pytest.mark.parametrize("seed", range(3))
 def test_a_rug_that_no_map_has_is_floor(seed: int) -> None:
     assert segments(floor(seed, rugs=(RUG,)), SCENE, 3.5) == []
 
