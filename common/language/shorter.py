@@ -115,7 +115,7 @@ SHORTER = tuple(
         (r"\bthe (?:place|home|spot) (?:of|for) ((?:the|my) (?:\w+ )?\w+) is (?:on |in |at )?(?=the |my )",
          r"\1 belongs on "),
         (r"^(how many .+?) (?:did|do|could) you (?:see|find|notice|spot)\b", r"\1 are there"),
-        (r"^did you (?:see|notice|spot|find|come across) (?=(?:the|my|our|any|an?)\b)", "have you seen "),
+        (r"^did you (?:see|notice|spot|find|come across) (?=(?:the|my|our)\b)", "have you seen "),
         (r"(?<=\w) when you (?:were|went|passed) (?=(?:in|on|at|by)\b)", " "),
         (
             r"^(?:and )?do(?:es)? ((?:the|my) (?:\w+ )?\w+) (?:still )?(?:stand|lie|sit|hang|live) "
