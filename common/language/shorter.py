@@ -134,6 +134,13 @@ SHORTER = tuple(
             r"(?:[,.;]? (?:so )?(?:please )?forget (?:it|that name|that))?[.!]?$",
             r"forget the name \1",
         ),
+        (
+            r"\b((?:tidy|clear|clean|sort)(?: up| off)? (?:the|my|our) \w+(?: \w+)?)[?!.,;]+ (?:and )?"
+            r"(?:just |simply |please )*"
+            r"(?:put|take|move) (?:all )?(?:(?:of )?(?:the|those) (?:things|stuff)|"
+            r"everything|it all|them all|all of it) away\b",
+            r"\1",
+        ),
         (r"[,.;] (?:so )?both(?: of them)? (?=(?:in|into|to|on|onto) (?:the|my|our)\b)", ". put them "),
         (
             r"\b(?:take|carry|bring|move) ((?:the|my) \w+(?: \w+)?) (?:through |over |along |across )?"

@@ -64,6 +64,8 @@ from evaluation.everyday.understanding import understand
             "Please clear my desk: the white mug goes on the counter and the vitamin box on the bedside table.",
             "put(white mug, counter) & put(orange box, bedside table)",
         ),
+        ("last:put the yellow bowl on the kitchen table", "Put the apple there too.", "answer(there already)"),
+        ("-", "Would you clean up the coffee table? Just put the things away.", "tidy(living table)"),
         # Rules, names and questions in other words.
         ("-", "From now on the white mug's place is the desk.", "rule(white mug, desk)"),
         ("-", "The rule about the cans no longer applies, you can forget it.", "norule(cans)"),

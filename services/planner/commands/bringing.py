@@ -84,7 +84,7 @@ def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
     if there is None:
         raise Lost("I do not know which place you mean by there")
     everything = referents(builder, slots["thing"], prefer_held=True)
-    here = {there.name}
+    here = {there.name} if builder.spot else set[str]()
     if all(not m.object.held and {m.object.on, builder.world.room_of(m.object)} & here for m in everything):
         for meant in everything:  # "go to the study, take the mug there"
             take(builder, meant)
