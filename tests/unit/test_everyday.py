@@ -73,7 +73,9 @@ LEAST = {
     "39": Least(0.55, 0.83, 9),
     "40": Least(0.25, 0.6, 18),
     "41": Least(0.48, 0.7, 18),
-    "42": Least(0.48, 0.72, 18),
+    "42": Least(0.5, 0.74, 18),
+    "43": Least(0.6, 0.8, 15),
+    "44": Least(0.75, 0.93, 7),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
