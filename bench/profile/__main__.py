@@ -30,11 +30,11 @@ SMALL = 0.05
 """Parts below this are not shown [ms per robot second]."""
 PARTS = {
     "services.sim.physics:Physics.advance": "physics",
-    "services.sim.sensors:Sensors.scan": "lidar",
-    "services.sim.sensors:Sensors.feel": "joints and wheels",
+    "services.sim.sensors:Sensors.publish_scan": "lidar",
+    "services.sim.sensors:Sensors.publish_state": "joints and wheels",
     "services.sim.base:BaseDriver.advance": "drivers",
     "services.sim.drivers:ArmDriver.advance": "drivers",
-    "services.sim.contacts:Contacts.step": "contact log",
+    "services.sim.contacts:ContactLog.step": "contact log",
     "common.rendering.renderer:Renderer.load": "state",
     "common.rendering.renderer:Renderer.rgbd": "drawing",
     "common.rendering.renderer:Renderer.band": "drawing",

@@ -111,7 +111,8 @@ def test_only_into_what_is_seen_to_be_open_a_finger_goes(kind: str) -> None:
 
 def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
     assert PLANNER.believed(SPRAY) is SPRAY
-    monkeypatch.setattr(PLANNER, "_on_surface", lambda target: [])
+    known = PLANNER._on_surface
+    monkeypatch.setattr(PLANNER, "_on_surface", lambda target: known(target) if target.family == "long" else [])
     thin = PLANNER.believed(replace(SPRAY))
     below = surface(thin)[:, 2] < AT[2] - 0.05
     assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"

@@ -3,17 +3,20 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from pytest import MonkeyPatch
 
 from common.bus.memory import MemoryBus, MemoryIo
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.arm.arm_model import Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution import grasp_choice
 from services.manipulation.execution.robot import Failure, Robot, Steps
+from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError
@@ -63,12 +66,13 @@ def test_a_hand_that_would_be_in_the_surface_sets_nothing_down() -> None:
 
 def test_the_base_is_sent_elsewhere_once_and_then_it_is_taken_as_can_be(monkeypatch: MonkeyPatch) -> None:
     elsewhere, asked = (1.0, 2.0, 0.5), []
+    to_be_laid_down = SimpleNamespace(grasp=Grasp(Pose(np.zeros(3), np.eye(3)), 0.07, 0.03, 0.0, "top"))
 
-    def plan(*args: Any) -> str:
+    def plan(*args: Any) -> SimpleNamespace:
         asked.append(args[-1])
         if args[-1] is not None:
             raise Failure("UNREACHABLE", "could not be stood up")
-        return "to be laid down"
+        return to_be_laid_down
 
     monkeypatch.setattr(grasp_choice, "plan_grab", plan)
     monkeypatch.setattr(grasp_choice, "other_stance", lambda *args: elsewhere)
@@ -93,5 +97,5 @@ def test_the_base_is_sent_elsewhere_once_and_then_it_is_taken_as_can_be(monkeypa
     with pytest.raises(Failure) as failed:
         choose()
     assert failed.value.stance == elsewhere
-    assert choose() == "to be laid down"
+    assert choose() is to_be_laid_down
     assert [height is None for height in asked] == [False, False, True]
