@@ -110,6 +110,16 @@ SHORTER = tuple(
         (r"\bgive (?:me|us|everyone|everybody) a (?:shout|yell|holler|heads-up|heads up) (?=that\b)", "say "),
         (r"\b(?:sing|call|shout|yell) out (?=that\b)", "say "),
         (r"\b(?:what|who|which) all\b", "what"),
+        (
+            r"\b(?:get|have|set|lay|leave) ((?:the|my|a|an|some) (?:\w+ ){0,2}?\w+) (?:ready|out|waiting)"
+            r"(?: for (?:me|us|him|her|them))? "
+            r"(?=(?:on|in|at) (?:the|my|our)\b)",
+            r"put \1 ",
+        ),
+        (
+            r"\b(?:get|have) ((?:the|my|a|an|some) (?:\w+ ){0,2}?\w+) ready(?: for (?:me|us))?(?=$|[,.;!?])",
+            r"bring me \1",
+        ),
         (r"^(?:well,? |oh,? )?it does not matter,? (?:then |just )?(?=\w)", ""),
         (r"\b(the|my) ((?:\w+ )?\w+)'s (?:place|home|spot) is (?:on |in |at )?(?=the |my )", r"\1 \2 belongs on "),
         (r"\bthe (?:place|home|spot) (?:of|for) ((?:the|my) (?:\w+ )?\w+) is (?:on |in |at )?(?=the |my )",

@@ -66,6 +66,13 @@ from evaluation.everyday.understanding import understand
         ),
         ("last:put the yellow bowl on the kitchen table", "Put the apple there too.", "answer(there already)"),
         ("-", "Would you clean up the coffee table? Just put the things away.", "tidy(living table)"),
+        (
+            "-",
+            "Get the white bottle ready on the desk for me, will you? It's on the dresser.",
+            "put(white bottle, desk)",
+        ),
+        ("-", "Get the paintbrush ready on the counter for me.", "put(paintbrush, counter)"),
+        ("-", "Have the red mug ready for me.", "fetch(red mug)"),
         # Rules, names and questions in other words.
         ("-", "From now on the white mug's place is the desk.", "rule(white mug, desk)"),
         ("-", "The rule about the cans no longer applies, you can forget it.", "norule(cans)"),
