@@ -162,6 +162,10 @@ class Mission(msgspec.Struct):
         """The failure that ended the mission; an empty one if none did."""
         return self.failure if self.failure is not None and self.outcome != "delivered" else Failure("", "")
 
+    def failed_with(self, *codes: str) -> bool:
+        """Whether the last failure has one of the codes."""
+        return self.failure is not None and self.failure.code in codes
+
     @property
     def failed_for_good(self) -> bool:
         """The last failure forbids another try of the same."""

@@ -137,25 +137,23 @@ def grab(ctx: Context, item: str) -> Grab:
 def grasp(ctx: Context, item: str) -> Node:
     """Approach if needed and grab; after a failed grab its recoveries."""
     near = Condition("near_it", approach(ctx, item), lambda: ctx.mission.at != item)
-    still = StillMeant("still_meant", ctx, item)
     reached = WithinReach("within_reach", ctx, item)
-    held = grab(ctx, item), Settle("settle", ctx), HoldsWhatWasMeant(ctx, item)
-    first = Sequence("grasp_once", reached, near, still, *held, name=f"grasp {item}")
+    first = Sequence("grasp_once", reached, near, *_grab_if_meant(ctx, item), name=f"grasp {item}")
     if not ctx.config.grab_retries:
         return first
     task = Task(
         item,
         find=lambda: find(ctx, item),
         approach=lambda: approach(ctx, item),
-        grab=lambda: Sequence(
-            "grab_if_meant",
-            StillMeant("still_meant", ctx, item),
-            grab(ctx, item),
-            Settle("settle", ctx),
-            HoldsWhatWasMeant(ctx, item),
-        ),
+        grab=lambda: Sequence("grab_if_meant", *_grab_if_meant(ctx, item)),
     )
     return with_recoveries("grasp", ctx, first, AFTER_GRASPING, task, name=f"grasp: {item}")
+
+
+def _grab_if_meant(ctx: Context, item: str) -> tuple[Node, ...]:
+    """The steps of one grab: of the object that is still meant, with a check that no other is in the hand."""
+    still, check = StillMeant("still_meant", ctx, item), HoldsWhatWasMeant(ctx, item)
+    return still, grab(ctx, item), Settle("settle", ctx), check
 
 
 def release(ctx: Context, carried: str, at_home: bool, name: str) -> Sequence:

@@ -35,8 +35,7 @@ def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:
 
 def was_another(ctx: Context) -> bool:
     """The person has said that it was not the one."""
-    failure = ctx.mission.failure
-    return failure is not None and failure.code == ANOTHER
+    return ctx.mission.failed_with(ANOTHER)
 
 
 ask_about_the_near, near_possible = partial(ask_whether, near=True), partial(may_be, near=True)

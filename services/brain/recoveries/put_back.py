@@ -46,9 +46,7 @@ def put_back(ctx: Context, task: Task) -> Behaviour:
 
 def took_another(ctx: Context) -> bool:
     """The hand holds something else, and the surface from which it comes is known."""
-    failure = ctx.mission.failure
-    held = failure is not None and failure.code == ANOTHER_HELD
-    return held and bool(ctx.origin_of(ctx.gripper.holding))
+    return ctx.mission.failed_with(ANOTHER_HELD) and bool(ctx.origin_of(ctx.gripper.holding))
 
 
 def _forget(ctx: Context) -> None:

@@ -25,8 +25,7 @@ def put_right(ctx: Context, task: Task) -> Behaviour:
 
 def needs_replacing(ctx: Context) -> bool:
     """The object was lost on the way, or the look showed it not where, or not as, it belongs."""
-    failure = ctx.mission.failure
-    return is_misplaced(ctx) or (failure is not None and failure.code in LOST)
+    return is_misplaced(ctx) or ctx.mission.failed_with(*LOST)
 
 
 def announcement(ctx: Context) -> str:

@@ -24,7 +24,7 @@ def regrasp(ctx: Context, task: Task) -> Behaviour:
 def grab_failed(ctx: Context) -> bool:
     """Manipulation could not grab it, and trying again may help."""
     failure = ctx.mission.failure
-    if failure is None or failure.code == ANOTHER_HELD:
+    if failure is None or ctx.mission.failed_with(ANOTHER_HELD):
         return False
     return failure.stage == "GRABBING" and not failure.permanent
 

@@ -73,15 +73,13 @@ def can_go_on(ctx: Context) -> bool:
 
 def more_to_see(ctx: Context) -> bool:
     """Looking on may help, and not everything has been looked at."""
-    failure = ctx.mission.failure
-    return can_go_on(ctx) and (failure is None or failure.code != "NOTHING_NEW")
+    return can_go_on(ctx) and not ctx.mission.failed_with("NOTHING_NEW")
 
 
 def kept_away(ctx: Context) -> bool:
     """People kept the robot from a view, and it has not been so for as long as it waits for people on any other way."""
-    failure, config = ctx.mission.failure, ctx.config
-    lost = len(ctx.mission.search.unreached) * config.view_patience
-    return failure is not None and failure.code == PERSON and lost <= config.people_patience
+    lost = len(ctx.mission.search.unreached) * ctx.config.view_patience
+    return ctx.mission.failed_with(PERSON) and lost <= ctx.config.people_patience
 
 
 def report_not_found(ctx: Context, task: Task) -> Behaviour:

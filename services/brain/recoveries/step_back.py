@@ -47,6 +47,5 @@ def step_back(ctx: Context, task: Task) -> Behaviour:
 
 def may_have_fallen(ctx: Context) -> bool:
     """Something was found in this mission, and what is looked for is not seen now."""
-    failure = ctx.mission.failure
-    unseen = failure is not None and failure.code == "NOT_FOUND"
-    return unseen and bool(ctx.mission.search.found) and not ctx.mission.failed_for_good
+    mission = ctx.mission
+    return mission.failed_with("NOT_FOUND") and bool(mission.search.found) and not mission.failed_for_good

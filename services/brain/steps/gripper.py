@@ -131,5 +131,4 @@ def in_hand(ctx: Context) -> bool:
 
 def manipulation_gone(ctx: Context) -> bool:
     """The hand is full and nobody moves the arm any more."""
-    failure = ctx.mission.failure
-    return failure is not None and failure.code == "NO_PEER" and in_hand(ctx)
+    return ctx.mission.failed_with("NO_PEER") and in_hand(ctx)

@@ -160,8 +160,7 @@ class StillMeant(Leaf):
 
 def not_plain(ctx: Context) -> bool:
     """The grasp failed as NOT_PLAIN, and there is an object that the person was not asked about yet."""
-    failure = ctx.mission.failure
-    return failure is not None and failure.code == NOT_PLAIN and bool(candidates(ctx, LEAST))
+    return ctx.mission.failed_with(NOT_PLAIN) and bool(candidates(ctx, LEAST))
 
 
 def rated(ctx: Context, item: str, first: m.WorldObject | None = None) -> list[m.PossibleObject]:

@@ -125,7 +125,7 @@ class AlreadyInPlace(Leaf):
         label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return Status.FAILURE
-        if ctx.mission.failure is not None and ctx.mission.failure.code == "TOPPLED":
+        if ctx.mission.failed_with("TOPPLED"):
             return Status.FAILURE
         finding = _judged(ctx, pose, self._target, self._near)
         if finding.fault:
@@ -203,9 +203,11 @@ def verify_placement(ctx: Context, target: str, near: str = "") -> Behaviour:
     What is not to be seen, or not well enough to tell how it stands, is looked at from a little aside.
     """
     aside = Sequence("aside", TurnAside("turn_aside", ctx), Settle("come_to_rest", ctx))
-    moved = Condition("hidden_by_the_arm", aside, lambda: looks.used > 0 and _failed_with(ctx, "NOT_SEEN", "UNTOLD"))
+    moved = Condition(
+        "hidden_by_the_arm", aside, lambda: looks.used > 0 and ctx.mission.failed_with("NOT_SEEN", "UNTOLD")
+    )
     look = Sequence("look", moved, VerifyPlacement("check", ctx, target, near))
-    looks = Retry("look_at_it", ctx, look, LOOKS - 1, again=lambda: _failed_with(ctx, *MISPLACED_CODES, "UNTOLD"))
+    looks = Retry("look_at_it", ctx, look, LOOKS - 1, again=lambda: ctx.mission.failed_with(*MISPLACED_CODES, "UNTOLD"))
     return looks
 
 
@@ -219,16 +221,6 @@ def release_and_verify(ctx: Context, node_id: str, goal: str, target: str, near:
     return Sequence(f"{node_id}_and_look", release, Settle("settle", ctx), look)
 
 
-def unseen(ctx: Context) -> bool:
-    """The last look did not show the object."""
-    return _failed_with(ctx, "NOT_SEEN")
-
-
 def is_misplaced(ctx: Context) -> bool:
     """The last look showed the object not where, or not as, it belongs."""
-    return _failed_with(ctx, *MISPLACED_CODES)
-
-
-def _failed_with(ctx: Context, *codes: str) -> bool:
-    failure = ctx.mission.failure
-    return failure is not None and failure.code in codes
+    return ctx.mission.failed_with(*MISPLACED_CODES)
