@@ -51,17 +51,20 @@ def other_stance(
     anew at every stance takes seconds.
     """
     around = others(objects, found)
-    good = _good(planner, seen) if seen is not None else []
-    for pose in stances(household, found, but, STAND_OFFS)[:MOST] if good or seen is None else ():
+    known = planner.believed(seen) if seen is not None else None
+    good = _good(planner, known) if known is not None else []
+    if known is not None and not good:
+        return None
+    for pose in stances(household, found, but, STAND_OFFS)[:MOST]:
         solids = obstacles(household, pose, around, margin=MARGINS[0])
-        if seen is not None:
-            way = Way(solids, False, approach, lift, stand_on)
-            if _holds(planner, planner.believed(seen), good, compose(inverse(pose), but[0]), way, joints):
+        way = Way(solids, False, approach, lift, stand_on)
+        if known is not None:
+            if _holds(planner, known, good, compose(inverse(pose), but[0]), way, joints):
                 return pose
             continue
         target = target_of(found, pose, household)
         # What has no straight way in and up needs no search for the ways there and back.
-        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints):
+        if not feasible(planner, target, way, joints):
             continue
         with suppress(PlanError):
             plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on)
@@ -69,9 +72,9 @@ def other_stance(
     return None
 
 
-def _good(planner: Planner, seen: Target) -> list[Grasp]:
+def _good(planner: Planner, target: Target) -> list[Grasp]:
     """The good grasps of an object, the best first, as many as are tried at a stance."""
-    found = [g for stage in planner.candidates(planner.believed(seen)) for g in stage if not is_poor(g)]
+    found = [g for stage in planner.candidates(target) for g in stage if not is_poor(g)]
     return found[:STANCE_GRASPS]
 
 

@@ -118,7 +118,7 @@ def standing(
     too_wide = WIDTH_COST * beyond_it if beyond_it > 0.0 else 0.0
     flared = grows > 0.25 or radii[-1] > 1.25 * radii[1]
     # Past a neck one looks as well.
-    closed = upper_end(points, (x, y), float(radii[-2]), h, eye, noise) == "closed"
+    closed = not hollow and upper_end(points, (x, y), float(radii[-2]), h, eye, noise) == "closed"
     shape: ShapeFamily = "bowl" if hollow and (flared or h < 1.1 * widest) else "round"
     return Measurement(
         shape, x, y, 0.0 if math.isnan(handle) else handle, (2 * widest, 2 * widest, h),

@@ -16,8 +16,8 @@ of a can lies 5 mm below its rim."""
 LOOKED_INTO = 0.02
 """How far [m] above the end the camera has to be to look at it."""
 FEWEST, END_SEEN = 5, 0.06
-"""Points through the inner part that tell anything: at least [count], and by all of them. Chosen: a third of what a
-whole view from 45 degrees above shows."""
+"""Points through the inner part that tell anything: at least so many, and at least this share of all points. Chosen: a
+third of what a whole view from 45 degrees above shows."""
 
 
 def upper_end(points: Array, middle: Point, radius: float, h: float, eye: Array, noise: float) -> End:
