@@ -1,41 +1,60 @@
-"""`tidybot replay --export`: a mission cut out of a recording, or its timeline with pictures."""
+"""`tidybot replay --export`: a mission cut out of a recording."""
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from cli.errors import CliError, near
 from cli.recordings.copies import copy
 from common import topics
-from common.mission_log.recorded import missions
+from common.bus import codec
 from common.recording import Recording, Row
 
 BEFORE, AFTER = 2.0, 2.0
 """Seconds that are kept on either side of a mission."""
-PAGES = (".html", ".htm")
 
 
-def mission_of(recording: Recording, wanted: str) -> dict[str, Any]:
-    """The record of one mission: its id, or "last".
+class Span(msgspec.Struct):
+    """A mission's command, and the robot time [s] of its first word and of the first one that is of another."""
+
+    command: str
+    begin: float
+    end: float
+
+
+def missions(recording: Recording) -> dict[str, Span]:
+    """The missions of a recording by id, oldest first; one that was gone on with is one."""
+    found: dict[str, Span] = {}
+    at = ""
+    for row in recording.of(topics.BRAIN_STATE.key):
+        if row.junk:
+            continue
+        state = codec.decode(topics.BRAIN_STATE, row.payload)
+        if at and state.mission_id != at:
+            found[at].end = row.t
+        at = state.mission_id
+        if at:
+            span = found.setdefault(at, Span(state.command, state.started or row.t, row.t))
+            span.command, span.end = state.command or span.command, row.t
+    if at:
+        found[at].end = recording.rows[-1].t
+    return found
+
+
+def chosen(recording: Recording, wanted: str) -> tuple[str, Span]:
+    """One mission with its id: `wanted`, or "last".
 
     Raises:
         CliError: there is no such mission in the recording.
     """
-    told = missions(recording.rows)
+    told = missions(recording)
     if not told:
         raise CliError(f"{recording.path}: there is no mission in it")
-    found = next((record for record in told if record["id"] == wanted), None)
-    if wanted == "last":
-        found = told[-1]
-    if found is None:
-        known = [str(record["id"]) for record in told]
-        raise CliError(f"no mission {wanted!r}{near(wanted, known)}; the recording has {', '.join(known)}")
-    return found
-
-
-def span_of(record: dict[str, Any]) -> tuple[float, float]:
-    """Robot time from shortly before the mission to shortly after."""
-    return float(record["started"]) - BEFORE, float(record["until"]) + AFTER
+    name = [*told][-1] if wanted == "last" else wanted
+    if name not in told:
+        raise CliError(f"no mission {wanted!r}{near(wanted, told)}; the recording has {', '.join(told)}")
+    return name, told[name]
 
 
 def cut(recording: Recording, begin: float, end: float) -> Iterator[Row]:
@@ -48,37 +67,21 @@ def cut(recording: Recording, begin: float, end: float) -> Iterator[Row]:
         if (topic is not None and topic.latched and not topic.command) or row.key.startswith("service/"):
             known[row.key] = row
     for row in sorted(known.values(), key=lambda r: r.t):
-        yield Row(key=row.key, payload=row.payload, t=begin, wall=row.wall, tick=row.tick)
-    yield from (row for row in recording.rows if begin <= row.t <= end)
+        yield msgspec.structs.replace(row, t=begin)
+    yield from (row for row in recording.rows if begin <= row.t <= end and not row.junk)
 
 
 def export(path: Path, target: Path, wanted: str) -> None:
-    """Write one mission as what the name of `target` says.
+    """Write one mission as a recording of its own.
 
     Raises:
-        CliError: an unknown kind of file, no such mission.
+        CliError: no such mission, or the target is the recording itself.
         RecordingError: the recording cannot be read.
     """
-    kinds = (".mcap", *PAGES)
-    if target.suffix not in kinds:
-        raise CliError(f"{target}: what kind of file? It may end in {', '.join(kinds)}")
     recording = Recording(path)
-    record = mission_of(recording, wanted)
-    begin, end = span_of(record)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    if target.suffix in PAGES:
-        # The renderer and the templates are not for every command to load.
-        from cli.recordings.key_frames import key_frames
-        from common.mission_log.timeline import page
-
-        seen = key_frames(recording, record) if recording.of(topics.SIM_STATE.key) else []
-        target.write_text(page(record, seen), encoding="utf-8")
-    else:
-        _write(recording, target, begin, end)
-    print(f"{target}  mission {record['id']} “{record['command']}”  {target.stat().st_size / 1e6:.1f} MB")
-
-
-def _write(recording: Recording, target: Path, begin: float, end: float) -> None:
-    if target.resolve() == recording.path.resolve():
+    name, span = chosen(recording, wanted)
+    if target.resolve() == path.resolve():
         raise CliError(f"{target} is the recording itself")
-    copy(recording, target, (row for row in cut(recording, begin, end) if not row.junk))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    copy(recording, target, cut(recording, span.begin - BEFORE, span.end + AFTER))
+    print(f"{target}  mission {name} “{span.command}”  {target.stat().st_size / 1e6:.1f} MB")

@@ -66,10 +66,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--info", action="store_true", help="summarise the file (the default without --service)")
     parser.add_argument("--service", metavar="NAME", help="replay to this service; exit 1 when its outputs differ")
     parser.add_argument("--repair", type=Path, metavar="OUT", help="write what a torn file holds into a whole one")
-    parser.add_argument(
-        "--export", type=Path, metavar="OUT",
-        help="one mission as a recording (.mcap) or its timeline with pictures (.html)",
-    )  # fmt: skip
+    parser.add_argument("--export", type=Path, metavar="OUT", help="write one mission as a recording of its own")
     parser.add_argument("--mission", default="last", metavar="ID", help="which one (default: the last)")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.set_defaults(run=replay)

@@ -55,7 +55,7 @@ def chart(record: dict[str, Any]) -> dict[str, Any]:
     """Positions [px] of everything on the timeline: bands of states, lanes of marks, ticks of the axis."""
     entries, began = record["entries"], float(record["started"])
     last = max((float(e["t"]) for e in entries), default=began)
-    ended = max(float(record["ended"] if record["outcome"] else record.get("until", last)), last)
+    ended = max(float(record["ended"]) if record["outcome"] else last, last)
     length = max(ended - began, 1.0)
 
     def x(seconds: float) -> float:

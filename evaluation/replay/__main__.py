@@ -12,9 +12,10 @@ from pathlib import Path
 
 from cli.errors import CliError
 from cli.output import ProgressLine
-from common import config
+from common import config, topics
+from common import messages as m
+from common.bus import codec
 from common.household import load_household
-from common.mission_log.recorded import decoded
 from common.recording import Recording, RecordingError, Row
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
@@ -83,9 +84,21 @@ def _by_key(rows: Iterable[Row]) -> dict[str, list[Timed]]:
     """The messages of each key with their times, without what is none."""
     found: dict[str, list[Timed]] = {}
     for row in rows:
-        if (message := decoded(row)) is not None:
+        if (message := _decoded(row)) is not None:
             found.setdefault(row.key, []).append((row.t, message))
     return found
+
+
+def _decoded(row: Row) -> m.Message | None:
+    """The message of a row, None when it is none of its topic."""
+    topic = topics.BY_KEY.get(row.key)
+    if topic is None or row.junk:
+        return None
+    try:
+        message: m.Message = codec.decode(topic, row.payload)
+    except codec.DecodeError:
+        return None
+    return message
 
 
 def judged(player: Player) -> int:
