@@ -25,7 +25,7 @@ from tests.support import ROOT
 
 pytest.importorskip("foxglove", reason="the extra foxglove is not installed")
 
-from bench.peers.foxglove import FoxgloveClient
+from tests.peers.foxglove import FoxgloveClient
 
 PATIENCE = 20.0
 

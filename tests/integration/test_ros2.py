@@ -20,10 +20,10 @@ from tests.robot_side import RobotSide
 pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk is not installed")
 
-from bench.peers.ros import QosDurability, QosProfile, RosPeer, ros_peer
 from services.ros2 import incoming, outgoing
 from services.ros2.service import TF
 from services.ros2.types import Types
+from tests.peers.ros import QosDurability, QosProfile, RosPeer, ros_peer
 
 KINDS = sorted({row.type for row in (*outgoing.ROWS, *incoming.ROWS)} | {TF})
 PUBLISHED = {

@@ -14,7 +14,7 @@ from tests.integration.test_cli_up import Run, run
 pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk is not installed")
 
-from bench.peers.ros import ros_peer
+from tests.peers.ros import ros_peer
 
 __all__ = ["run"]
 STRING = "std_msgs/msg/String"
