@@ -9,10 +9,20 @@ import pytest
 
 from common.geometry import Array, quat_matrix, yaw_quat
 from services.manipulation.arm.arm_model import Pose
-from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, SLIPPERY, SLOPING, antipodal
+from services.manipulation.grasps.antipodal import ASIDE, LEVER, MOST_UPWARD, SLIPPERY, SLOPING, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp
-from services.manipulation.grasps.pads import BEHIND_PAD, FINGER_HALF, LONGEST, PLAY, STEEPEST, contact_at, contacts
+from services.manipulation.grasps.pads import (
+    BEHIND_PAD,
+    FINGER_HALF,
+    LONGEST,
+    PLAY,
+    STEEPEST,
+    Contacts,
+    Wanted,
+    contact_at,
+    contacts,
+)
 from services.manipulation.grasps.parts import across_parts
 from services.manipulation.grasps.surface import SPACING, surface
 from services.manipulation.grasps.target import Target
@@ -93,9 +103,36 @@ def test_an_upper_face_is_no_slope_of_the_sides_below_it() -> None:
     sides = [np.stack([along, np.full(along.shape, y), height], axis=1) for y in (-0.02, 0.02)]
     top = np.stack([np.arange(-0.03, 0.031, 0.008), np.full(8, 0.004), np.full(8, -0.002)], axis=1)
     found = contacts(np.concatenate([*sides, top]), (np.array([0.0, 0.0, -1.0]), -0.0095), OPENING)
-    held = [contact for at, contact in found if abs(at[0]) < 0.02 and contact.width == pytest.approx(0.04)]
-    assert held
-    assert max(contact.slope for contact in held) < 0.1
+    held = (np.abs(found.at[:, 0]) < 0.02) & np.isclose(found.width, 0.04)
+    assert held.any()
+    assert found.slope[held].max() < 0.1
+
+
+def test_only_the_contacts_that_are_wanted_are_told() -> None:
+    wedge = flat(lambda x, y: (np.abs(x) < 0.05) & (np.abs(y) < 0.018 + 0.15 * x), 0.03)
+    local, floor = (surface(wedge) - np.array(AT)) * (1, -1, -1), (np.array([0.0, 0.0, -1.0]), -0.02)
+    every = contacts(local, floor, OPENING)
+    wanted = Wanted((0.03, 0.05), (-0.01, 0.002), 0.4)
+    found = contacts(local, floor, OPENING, wanted)
+    which = (every.width >= 0.03) & (every.width <= 0.05) & (every.share >= 0.4)
+    which &= (every.at[:, 1] >= -0.01) & (every.at[:, 1] <= 0.002)
+    assert 0 < which.sum() < len(which)
+    for one, other in ((every.at, found.at), (every.width, found.width), (every.slope, found.slope)):
+        assert np.array_equal(one[which], other)
+
+
+def test_of_something_large_no_part_is_looked_at_that_the_hand_may_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its weight would turn it between the pads, however near the part is."""
+    looked: list[Wanted] = []
+
+    def noted(local: Array, floor: tuple[Array, float], opening: float, wanted: Wanted) -> Contacts:
+        looked.append(wanted)
+        return contacts(local, floor, opening, wanted)
+
+    monkeypatch.setattr("services.manipulation.grasps.antipodal.contacts", noted)
+    grasps(target("box", (0.5, 0.4, 0.3)))
+    assert looked
+    assert max(max(map(abs, wanted.aside)) for wanted in looked) <= LEVER + ASIDE
 
 
 def test_the_lower_finger_of_a_leaning_hand_stays_off_the_table() -> None:

@@ -5,18 +5,20 @@ approaches that a mobile robot has: from above and from its side, the fingers le
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.geometry import Array
 from common.kinds import kind_of
 from services.manipulation.arm.arm_model import Pose
+from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp, approach_rotation, on_handle, upper_end
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import PART
-from services.manipulation.grasps.pads import CELL, CELLS, LONGEST, PLAY, Contact, contacts
+from services.manipulation.grasps.pads import CELL, CELLS, LONGEST, PLAY, Contacts, Wanted, contacts
 from services.manipulation.grasps.parts import across_parts
 from services.manipulation.grasps.surface import guessed_along, surface
 from services.manipulation.grasps.target import Target
@@ -82,52 +84,80 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     least, guessed = THIN if min(target.size) > 2 * THIN else 0.0, guessed_along(target)
     if kind_of(target.kind).shape == "sphere":
         least = max(least, CHORD * min(target.size))
-    found: list[tuple[float, Grasp]] = []
+    found: list[_Found] = []
     for rotation, tilt, off, name in _directions(target, facing, _across(target, points)):
         if on_handle(target, rotation):
             continue
         blind = GUESSED * abs(float(rotation[:, 1] @ guessed)) if guessed is not None else 0.0
+        upper = upper_end(target, rotation)
+        less = blind + _from_below(upper, rotation)
         floor = rotation[2], target.bottom - target.position[2] + PLAY
-        for place, contact in _places((points - centre) @ rotation, floor, opening, most):
-            if not least <= contact.width <= widest:
-                continue
-            at = centre + rotation @ place
-            if float(np.hypot(*(at - centre)[:2])) > LEVER:
-                continue
-            beside = f"{1000 * place[1]:+.0f}/" if abs(float(place[1])) > LONGEST / 2 else ""
-            label = f"{name}, {1000 * place[0]:+.0f}/{beside}{1000 * place[2]:+.0f} mm"
-            grasp = Grasp(
-                Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,
-                upper_end(target, rotation), on_surface=True,
-            )  # fmt: skip
-            worth = _worth(target, contact, at - centre, tilt, off, widest) - _from_below(grasp) - blind
-            found.append((worth, grasp))
-    return _different(sorted(found, key=lambda entry: -entry[0]))
+        for there in _places((points - centre) @ rotation, floor, opening, (least, widest), most):
+            arm = there.at @ rotation.T
+            worth = _worth(target, there, arm, tilt, off, widest) - less
+            near = np.hypot(arm[:, 0], arm[:, 1]) <= LEVER
+            found += [
+                _Found(rotation, math.radians(tilt), name, upper, *row)
+                for row in zip(*(a[near] for a in (there.at, centre + arm, there.width, worth)), strict=True)
+            ]
+    return [one.grasp(target.bottom) for one in _different(found)]
 
 
-def _places(local: Array, floor: tuple[Array, float], opening: float, most: float) -> Iterator[tuple[Array, Contact]]:
-    """As `contacts`; of what is wider than the fingers go the parts that have room for a finger on either side. No more
-    than the share `most` of a pad is asked for.
+@dataclass(frozen=True)
+class _Found:
+    """A grasp in the making: the hand's rotation, tilt [rad], bearing in words, where the upper end comes to point;
+    place along the hand's axes (3,) and in the base frame (3,), width [m], worth."""
+
+    rotation: Array
+    tilt: float
+    bearing: str
+    upper: float | None
+    place: Array
+    at: Array
+    width: float
+    worth: float
+
+    def grasp(self, bottom: float) -> Grasp:
+        """It over an object whose underside is at a height [m]."""
+        along, across, deep = (1000 * float(v) for v in self.place)
+        beside = f"{across:+.0f}/" if abs(across) > 1000 * LONGEST / 2 else ""
+        return Grasp(
+            Pose(self.at, self.rotation), float(self.width), float(self.at[2]) - bottom, self.tilt,
+            f"{self.bearing}, {along:+.0f}/{beside}{deep:+.0f} mm", self.upper, on_surface=True,
+            worth=float(self.worth),
+        )  # fmt: skip
+
+
+def _places(
+    local: Array, floor: tuple[Array, float], opening: float, widths: tuple[float, float], most: float
+) -> Iterator[Contacts]:
+    """As `contacts` with a width from one to the other [m]; of what is wider than the fingers go the parts that have
+    room for a finger on either side. No more than the share `most` of a pad is asked for.
     """
     low, high = float(local[:, 1].min()), float(local[:, 1].max())
     if high - low <= opening - 2 * PLAY:
-        yield from (found for found in contacts(local, floor, opening) if found[1].share >= min(LEAST_SHARE, most))
+        yield contacts(local, floor, opening, Wanted(widths, share=min(LEAST_SHARE, most)))
         return
+    up = floor[0]
+    # Farther to the side than this the hand is beyond the lever, wherever along it.
+    farthest = LEVER * math.sqrt(1.0 - up[1] ** 2) + float(np.abs(local @ up).max() + PAD) * abs(up[1]) + ASIDE / 2
+    local = local[np.argsort(local[:, 1])]
     for across in np.arange(low, high + ASIDE, ASIDE):
-        apart = np.abs(local[:, 1] - across)
-        if not (apart < ASIDE).any():
+        if abs(across) > farthest:
             continue
-        part = local[apart <= opening / 2 + FINGER]
-        for place, contact in contacts(part, floor, opening):
-            if abs(float(place[1]) - across) <= ASIDE / 2 and contact.share >= min(OF_PART, most):
-                yield place, contact
+        reach = opening / 2 + FINGER
+        first, near, beyond, last = np.searchsorted(local[:, 1], across + np.array([-reach, -ASIDE, ASIDE, reach]))
+        if near < beyond:
+            there = (across - ASIDE / 2, across + ASIDE / 2)
+            yield contacts(local[first:last], floor, opening, Wanted(widths, there, min(OF_PART, most)))
 
 
-def _from_below(grasp: Grasp) -> float:
-    """What a grasp of something that lies costs when the hand would come from below it once that stands."""
-    if grasp.axis is None:
+def _from_below(upper: float | None, rotation: Array) -> float:
+    """What a grasp of something that lies costs when the hand would come from below it once that stands; `upper`: where
+    its upper end points [rad]."""
+    if upper is None:
         return 0.0
-    lean = float(grasp.pose.rotation[:2, 2] @ (math.cos(grasp.axis), math.sin(grasp.axis)))
+    lean = float(rotation[:2, 2] @ (math.cos(upper), math.sin(upper)))
     return LAID_DOWN if lean > MOST_UPWARD else 0.0
 
 
@@ -157,36 +187,46 @@ def _directions(target: Target, facing: float, across: list[float]) -> Iterator[
             yield rotation, tilt, math.radians(bearing), f"{tilt} deg at {bearing:+.0f}"
 
 
-def _worth(target: Target, contact: Contact, arm: Array, tilt: int, off: float, widest: float) -> float:
-    """How good a grasp is, about 1 for the best: what both pads touch counts most."""
+def _worth(target: Target, there: Contacts, arm: Array, tilt: int, off: float, widest: float) -> Array:
+    """How good grasps are (n,), about 1 for the best: what both pads touch counts most."""
     preferred = 90 if target.size[2] < LOW else 25
-    lever = float(np.hypot(arm[0], arm[1])) + 0.3 * abs(float(arm[2]))
-    tight = max(0.0, contact.width + 2 * target.spread - widest + 0.008) / 0.008
+    lever = np.hypot(arm[:, 0], arm[:, 1]) + 0.3 * np.abs(arm[:, 2])
+    tight = np.maximum(0.0, there.width + 2 * target.spread - widest + 0.008) / 0.008
     # Of a part that is hardly wider than its width is doubtful, one side may be that of something else.
-    part = contact.width < PART * min(target.size)
-    vague = max(0.0, 1.0 - contact.width / (2 * (MEASURED + 2 * target.spread))) if part else 0.0
-    return (
-        min(contact.share, 0.75) - VAGUE * vague - 0.5 * contact.slope - 4.0 * lever
-        - SLIDES * max(0.0, contact.slope - SLIPPERY) - 0.3 * min(tight, 1.0)
+    part = there.width < PART * min(target.size)
+    vague = np.where(part, np.maximum(0.0, 1.0 - there.width / (2 * (MEASURED + 2 * target.spread))), 0.0)
+    found: Array = (
+        np.minimum(there.share, 0.75) - VAGUE * vague - 0.5 * there.slope - 4.0 * lever
+        - SLIDES * np.maximum(0.0, there.slope - SLIPPERY) - 0.3 * np.minimum(tight, 1.0)
         - 0.2 * abs(tilt - preferred) / 90 - 0.15 * abs(off) / (math.pi / 2)
     )  # fmt: skip
+    return found
 
 
-def _different(ranked: list[tuple[float, Grasp]]) -> list[Grasp]:
-    """The best of those that are alike, at most `KEPT`."""
-    kept: list[Grasp] = []
-    for worth, grasp in ranked:
-        if len(kept) >= KEPT:
-            break
-        if not any(alike(grasp.pose, other.pose) for other in kept):
-            kept.append(replace(grasp, worth=worth))
+def _different(found: Sequence[_Found]) -> list[_Found]:
+    """The best of those that are alike, best first, at most `KEPT`."""
+    kept: list[_Found] = []
+    if not found:
+        return kept
+    at, turn = np.array([one.at for one in found]), np.array([one.rotation for one in found])
+    left = np.argsort([-one.worth for one in found], kind="stable")
+    while len(left) and len(kept) < KEPT:
+        best = left[0]
+        kept.append(found[best])
+        left = left[~_alike(at[left] - at[best], turn[left], turn[best])]
     return kept
+
+
+def _alike(apart: Array, turns: Array, turn: Array) -> NDArray[np.bool_]:
+    """Which of the hands `apart` (n, 3) [m] from one, with rotations (n, 3, 3), take hold as that with (3, 3)."""
+    # A parallel gripper holds the same with its fingers exchanged.
+    closing, approach = np.abs(turns[:, :, 1] @ turn[:, 1]), turns[:, :, 2] @ turn[:, 2]
+    found: NDArray[np.bool_] = (np.linalg.norm(apart, axis=1) <= APART) & (
+        np.minimum(closing, approach) > math.cos(TURNED)
+    )
+    return found
 
 
 def alike(a: Pose, b: Pose) -> bool:
     """Two poses of the hand take hold of the same place in the same way."""
-    if float(np.linalg.norm(a.position - b.position)) > APART:
-        return False
-    # A parallel gripper holds the same with its fingers exchanged.
-    turn = abs(float(a.rotation[:, 1] @ b.rotation[:, 1])), float(a.rotation[:, 2] @ b.rotation[:, 2])
-    return min(turn) > math.cos(TURNED)
+    return bool(_alike((a.position - b.position)[None], a.rotation[None], b.rotation)[0])

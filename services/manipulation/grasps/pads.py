@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from common.geometry import Array
 from services.manipulation.arm.arm_model import Pose
@@ -47,8 +48,29 @@ class Contact:
     slope: float
 
 
-def contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[tuple[Array, Contact]]:
-    """What pads find wherever they may come to lie with one rotation, and where (3,) their middle is then [m].
+@dataclass(frozen=True)
+class Contacts:
+    """What pads find at places `at` (n, 3) [m] of their middle along the hand's axes: as `Contact`, each (n,)."""
+
+    at: Array
+    width: Array
+    share: Array
+    slope: Array
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What alone is looked for: places with a `width` [m] from one to the other, `aside` (from, to) [m] from the
+    object's middle along the closing direction, and the least `share` of a pad.
+    """
+
+    width: tuple[float, float] = (0.0, math.inf)
+    aside: tuple[float, float] = (-math.inf, math.inf)
+    share: float = 0.0
+
+
+def contacts(local: Array, floor: tuple[Array, float], opening: float, wanted: Wanted = Wanted()) -> Contacts:
+    """What pads find wherever they may come to lie with one rotation.
 
     `local` (n, 3): the surface along the hand's axes, from the object's middle: x along the pads' width, y the closing
     direction, z the approach. `floor`: the upward direction (3,) in these axes, and the height [m] over the object's
@@ -57,7 +79,7 @@ def contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[t
     up, level = floor
     low = np.array([local[:, 0].min(), local[:, 2].min()])
     # The lowest pads that the floor allows lie on whole cells.
-    deepest = _deepest(up, level, 0.0)
+    deepest = float(_deepest(up, level, 0.0))
     if math.isfinite(deepest):
         low[1] = deepest + PAD - math.ceil((deepest + PAD - low[1]) / CELL[1]) * CELL[1]
     index = np.floor((local[:, (0, 2)] - low) / CELL).astype(int) + PADDING
@@ -65,32 +87,37 @@ def contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[t
     left, right = np.full(shape, -np.inf), np.full(shape, np.inf)
     np.maximum.at(left, (index[:, 0], index[:, 1]), local[:, 1])
     np.minimum.at(right, (index[:, 0], index[:, 1]), local[:, 1])
-    first, sides = _first(np.isfinite(left)), [left, -right]
+    sides = [left, -right]
     height = float(np.ptp(local @ up))
+    first = _first(np.isfinite(left))
     if height <= 2 * PAD:
         sides = [_without_upper_face(side) for side in sides]
-    pads = [np.lib.stride_tricks.sliding_window_view(side, CELLS) for side in sides]
-    tops = [pad.max(axis=(2, 3)) for pad in pads]
+    tops = [_largest(_largest(side, CELLS[0], 0), CELLS[1], 1) for side in sides]
     with np.errstate(invalid="ignore"):
         middle, width = (tops[0] - tops[1]) / 2, tops[0] + tops[1]
         reach = [_passed(side) for side in sides]
         fits = np.maximum(reach[0] - middle, reach[1] + middle) <= opening / 2 - PLAY
-    least = tuple(2 if np.ptp(local[:, axis]) > 2 * size else 1 for axis, size in zip((0, 2), CELL, strict=True))
-    shares, slopes = zip(*(_touched(pad, top, least) for pad, top in zip(pads, tops, strict=True)), strict=True)
-    share, slope = np.minimum(*shares), np.maximum(*slopes)
+        fits &= (width > 0) & (width >= wanted.width[0]) & (width <= wanted.width[1])
+        fits &= (middle >= wanted.aside[0]) & (middle <= wanted.aside[1])
+    rows, columns = np.nonzero(fits)
+    along = low[0] + (rows + CELLS[0] / 2 - PADDING[0]) * CELL[0]
+    deep = low[1] + (columns + CELLS[1] / 2 - PADDING[1]) * CELL[1]
+    can = _deepest(up, level, along, middle[fits], width[fits])
     # Between whole cells the pads stay a little farther back, if something of a low thing is between them still.
     back = min(CELL[1], max(0.0, height - PLAY)) / 2
-    found = []
-    for i, k in zip(*np.nonzero(fits & (width > 0) & (slope <= STEEPEST)), strict=True):
-        along = float(low[0] + (i + CELLS[0] / 2 - PADDING[0]) * CELL[0])
-        deep = float(low[1] + (k + CELLS[1] / 2 - PADDING[1]) * CELL[1])
-        within = (k + CELLS[1] / 2 - first[i]) * CELL[1] <= HAND_DEPTH
-        across, apart = float(middle[i, k]), float(width[i, k])
-        can = _deepest(up, level, along, across, apart)
-        if within and abs(along) <= LONGEST and deep <= can + back + 1e-6:
-            at = np.array([along, across, min(deep, can)])
-            found.append((at, Contact(apart, float(share[i, k]), float(slope[i, k]))))
-    return found
+    near = (columns + CELLS[1] / 2 - first[rows]) * CELL[1] <= HAND_DEPTH
+    near &= (np.abs(along) <= LONGEST) & (deep <= can + back + 1e-6)
+    at = np.stack([along, middle[fits], np.minimum(deep, can)], axis=1)[near]
+    rows, columns = rows[near], columns[near]
+    pads = [np.lib.stride_tricks.sliding_window_view(side, CELLS)[rows, columns] for side in sides]
+    with np.errstate(invalid="ignore"):
+        above = [pad - pad.max(axis=(1, 2), keepdims=True, initial=-np.inf) for pad in pads]
+    share, slope = np.minimum(*map(_share, above)), np.full(len(at), np.inf)
+    much = share >= wanted.share
+    least = tuple(2 if np.ptp(local[:, axis]) > 2 * size else 1 for axis, size in zip((0, 2), CELL, strict=True))
+    slope[much] = np.maximum(*(_slope(side[much], least) for side in above))
+    held = slope <= STEEPEST
+    return Contacts(at[held], width[rows, columns][held], share[held], slope[held])
 
 
 def contact_at(surface: Array, pose: Pose) -> Contact | None:
@@ -106,21 +133,19 @@ def contact_at(surface: Array, pose: Pose) -> Contact | None:
     np.maximum.at(left, tuple(index[within].T), local[within, 1])
     np.minimum.at(right, tuple(index[within].T), local[within, 1])
     tops = float(left.max()), float(-right.min())
-    touched = [
-        _touched(pad[None, None], np.array([[top]]), (1, 1)) for pad, top in zip((left, -right), tops, strict=True)
-    ]
-    shares, slopes = zip(*touched, strict=True)
-    return Contact(sum(tops), float(np.minimum(*shares)[0, 0]), float(np.maximum(*slopes)[0, 0]))
+    above = np.stack([left - tops[0], -right - tops[1]])
+    return Contact(sum(tops), float(_share(above).min()), float(_slope(above, (1, 1)).max()))
 
 
-def _deepest(up: Array, level: float, along: float, across: float = 0.0, width: float = 0.0) -> float:
+def _deepest(up: Array, level: float, along: ArrayLike, across: ArrayLike = 0.0, width: ArrayLike = 0.0) -> Array:
     """How far along the approach [m] the pads' middle can be, `along` and `across` it, with no fingertip below `level`
     where they are `width` apart.
     """
     turn, lean, down = float(up[0]), float(up[1]), -float(up[2])
     # The lowest corner of the tips: PAD beyond the middle, half a finger to either side, behind the lower pad.
-    tip = turn * along - abs(turn) * FINGER_HALF + lean * across - abs(lean) * (width / 2 + BEHIND_PAD)
-    return (tip - level) / down - PAD if down > 1e-3 else math.inf
+    behind = np.asarray(width) / 2 + BEHIND_PAD
+    tip = turn * np.asarray(along) - abs(turn) * FINGER_HALF + lean * np.asarray(across) - abs(lean) * behind
+    return (tip - level) / down - PAD if down > 1e-3 else np.full_like(tip, np.inf)
 
 
 def _without_upper_face(side: Array) -> Array:
@@ -136,35 +161,53 @@ def _without_upper_face(side: Array) -> Array:
 def _first(filled: Array) -> Array:
     """For every place of the pads across their width, the first cells along the approach that the hand comes upon."""
     reached = np.where(filled.any(axis=1), filled.argmax(axis=1), filled.shape[1])
-    wide = np.pad(reached, 1, constant_values=filled.shape[1])
-    found: Array = np.lib.stride_tricks.sliding_window_view(wide, CELLS[0] + 2).min(axis=1)
-    return found
+    return -_largest(-np.pad(reached, 1, constant_values=filled.shape[1]), CELLS[0] + 2, 0)
 
 
 def _passed(side: Array) -> Array:
     """For every pad's place the outermost [m] that a finger passes on its way there."""
-    so_far = np.maximum.accumulate(side, axis=1)
-    found: Array = np.lib.stride_tricks.sliding_window_view(so_far, (CELLS[0], 1))[:, CELLS[1] - 1 :].max(axis=(2, 3))
+    return _largest(np.maximum.accumulate(side, axis=1), CELLS[0], 0)[:, CELLS[1] - 1 :]
+
+
+def _largest(values: Array, count: int, axis: int) -> Array:
+    """The largest of each `count` neighbours along an axis."""
+    last = values.shape[axis] - count + 1
+    found = values.take(range(last), axis)
+    for n in range(1, count):
+        np.maximum(found, values.take(range(n, n + last), axis), out=found)
     return found
 
 
-def _touched(pad: Array, top: Array, least: tuple[int, ...]) -> tuple[Array, Array]:
-    """For pads (n, m, 3, 4) of cells with the outermost height in each: the share that touches, the slope of that.
+def _share(above: Array) -> Array:
+    """The share (n,) that touches of pads (n, 3, 4) of cells with their height over the outermost."""
+    found: Array = (above > -FLAT).mean(axis=(1, 2))
+    return found
 
-    The slope is infinite where less than `least` of the columns and rows have something in them: there it is not known.
+
+def _slope(above: Array, least: tuple[int, ...]) -> Array:
+    """The slope (n,) of what pads touch; infinite where less than `least` of the columns and rows have something in
+    them: there it is not known.
     """
-    with np.errstate(invalid="ignore"):
-        above = pad - top[..., None, None]
-    share = (above > -FLAT).mean(axis=(2, 3))
     filled = np.isfinite(above)
-    v, u = np.meshgrid((np.arange(CELLS[1]) - 1.5) * CELL[1], (np.arange(CELLS[0]) - 1.0) * CELL[0])
-    basis = np.stack([u, v, np.ones(CELLS)])
     depth = np.where(filled, np.maximum(above, -STEP), 0.0)
-    of_row = np.exp(-((depth.max(axis=2, where=filled, initial=-STEP, keepdims=True) / NEAR) ** 2))
-    weight = np.where(filled, np.maximum(of_row, LEAST_WEIGHT), 0.0)
+    of_row = np.exp(-((depth.max(axis=1, where=filled, initial=-STEP, keepdims=True) / NEAR) ** 2))
+    weight = np.where(filled, np.maximum(of_row, LEAST_WEIGHT), 0.0).reshape(len(above), math.prod(CELLS))
     # Least squares of a plane through the cells; the ridge leaves directions without cells level.
-    normal = np.einsum("nmij,aij,bij->nmab", weight, basis, basis) + np.diag([1e-6, 1e-6, 1e-9])
-    right = np.einsum("nmij,aij->nma", weight * depth, basis)
+    normal = (weight @ _SQUARES).reshape(-1, 3, 3) + np.diag([1e-6, 1e-6, 1e-9])
+    right = (weight * depth.reshape(weight.shape)) @ _BASIS
     plane = np.linalg.solve(normal, right[..., None])[..., 0]
-    known = (filled.any(axis=3).sum(axis=2) >= least[0]) & (filled.any(axis=2).sum(axis=2) >= least[1])
-    return share, np.where(known, np.hypot(plane[..., 0], plane[..., 1]), np.inf)
+    known = (filled.any(axis=2).sum(axis=1) >= least[0]) & (filled.any(axis=1).sum(axis=1) >= least[1])
+    found: Array = np.where(known, np.hypot(plane[:, 0], plane[:, 1]), np.inf)
+    return found
+
+
+_BASIS = np.stack(
+    [
+        *(a.ravel() for a in np.meshgrid((np.arange(CELLS[1]) - 1.5) * CELL[1], (np.arange(CELLS[0]) - 1.0) * CELL[0])),
+        np.ones(math.prod(CELLS)),
+    ],
+    axis=1,
+)
+"""Of a plane: along the approach, across, and level, at the cells of a pad (12, 3)."""
+_SQUARES = (_BASIS[:, :, None] * _BASIS[:, None, :]).reshape(len(_BASIS), -1)
+"""Their products (12, 9)."""
