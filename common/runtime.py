@@ -10,7 +10,7 @@ from common import config
 from common.bus.port import Outside
 from common.bus.session import BusError, NoRouter, default_connect, open_session
 from common.household import load_household
-from common.process.host import BAD_CONFIGURATION, StopSignal, die_with_parent
+from common.process.host import BAD_CONFIGURATION, StopSignal
 from common.process.service_process import Process, ServiceClass
 from common.scene import SceneError, load_scene
 from common.time.clock import SimClock, WallClock
@@ -23,7 +23,6 @@ def main(kind: ServiceClass) -> None:
     """Entry point of `python -m services.<name>`; ends the process with the documented exit status."""
     args = _arguments(kind)
     stop = StopSignal()
-    die_with_parent()
     environ = os.environ
     # One link, one task that reads it: a second thread is only woken in vain, at every message.
     environ.setdefault("ZENOH_RUNTIME", "(rx: (worker_threads: 1))")

@@ -16,12 +16,11 @@ from supervisor.process import Subprocess
 from supervisor.states import ProcessStates
 
 from cli.processes import forked
+from common.process.host import BAD_CONFIGURATION
 from common.time import clock
 
 PR_SET_PDEATHSIG = 1
 """Option of prctl(2): the signal that a process gets when its parent ends."""
-BAD_CONFIGURATION = 2
-"""Exit status of a service that refuses its configuration: starting it again would not help."""
 CRASHES, WITHIN = int(os.environ.get("TIDYBOT_CRASHES", "5")), 60.0
 """So many ends of a process within so many seconds are a crash loop; chosen."""
 starts: Counter[str] = Counter()

@@ -17,7 +17,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.session import BusError, open_session
-from common.process.host import StopSignal, die_with_parent, stat_of
+from common.process.host import StopSignal, stat_of
 from common.security.keys import OFF
 from common.time.clock import monotonic, unix_time
 
@@ -103,7 +103,6 @@ def _end(supervision: Supervision, process: ProcessState, why: str) -> None:
 
 
 def main() -> int:
-    die_with_parent()
     stop = StopSignal()
     supervision = Supervision(run_dir(os.environ))
     while not stop.is_set():

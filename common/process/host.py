@@ -1,4 +1,4 @@
-"""What a process tells the host and asks of it: signals, parent death, memory."""
+"""What a process tells the host and asks of it: signals, connections, memory."""
 
 import ctypes
 import os
@@ -10,8 +10,6 @@ import threading
 from pathlib import Path
 from types import FrameType
 
-_PR_SET_PDEATHSIG = 1
-"""Option of Linux's prctl(2): the signal that comes when the parent dies."""
 BAD_CONFIGURATION = 2
 """Exit status of a process that refuses its configuration, fixed by the interface: starting it again does not help."""
 SILENCE = 3.0
@@ -37,18 +35,6 @@ class StopSignal:
 
     def wait(self, timeout: float) -> bool:
         return self._event.wait(timeout)
-
-
-def die_with_parent() -> None:
-    """Ask Linux for SIGTERM when the supervisor dies, when it says it is our parent (TIDYBOT_SUPERVISED)."""
-    if os.environ.get("TIDYBOT_SUPERVISED") != "1":
-        return
-    try:
-        ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    except (OSError, AttributeError):
-        return
-    if os.getppid() == 1:
-        os.kill(os.getpid(), signal.SIGTERM)
 
 
 def limit_silence(seconds: float) -> None:

@@ -6,14 +6,13 @@ the topic table and no others.
 
 import argparse
 import ipaddress
-import os
 import sys
 from pathlib import Path
 
 import zenoh
 
 from common.bus.session import endpoints
-from common.process.host import BAD_CONFIGURATION, SILENCE, StopSignal, die_with_parent, limit_silence
+from common.process.host import BAD_CONFIGURATION, SILENCE, StopSignal, limit_silence
 from common.security import access, keys
 from common.security.certificate import Identity
 from common.security.zenoh_config import ROUTER_CONFIG, as_json, secure, subjects, value_of
@@ -23,7 +22,6 @@ def main() -> None:
     """Entry point of `python -m services.router`: exit 0 after SIGTERM, 2 when it cannot listen."""
     args = _arguments()
     stop = StopSignal()
-    die_with_parent()
     try:
         args.listen = args.listen or f"{'tls' if keys.directory() else 'tcp'}/127.0.0.1:7447"
         opened = zenoh.open(_config(args))
@@ -40,10 +38,10 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m services.router", description=__doc__)
     parser.add_argument(
         "--listen",
-        default=os.environ.get("TIDYBOT_LISTEN", ""),
+        default="",
         help="endpoints, comma-separated (default: port 7447 of this machine, over TLS when there are keys)",
     )
-    parser.add_argument("--connect", default=os.environ.get("TIDYBOT_ROUTERS", ""), help="other routers to link with")
+    parser.add_argument("--connect", default="", help="other routers to link with")
     parser.add_argument("--config", type=Path, default=ROUTER_CONFIG, help="zenoh configuration (default %(default)s)")
     parser.add_argument("--open", action="store_true", help="listen without certificates beyond this machine")
     return parser.parse_args()
