@@ -118,9 +118,8 @@ class Demo:
 def take_picture(plan: Plan, path: Path) -> str:
     """A picture of the scene as it is now; what was done about it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    words = ("--view", "delivery", "--out", str(path))
     try:
-        said_by("services.camera.picture", *words, environ=plan.environ, timeout=PICTURE)
+        said_by("services.camera.picture", str(path), environ=plan.environ, timeout=PICTURE)
     except CliError as error:
         return f"no picture: {error}"
     return f"picture: {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}"
