@@ -86,7 +86,7 @@ class Viewpoints:
     """
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
-        self._camera, self._plan = camera, floor_plan
+        self.camera, self.plan = camera, floor_plan
         self._surfaces = [*(r for r in floor_plan.receptacles if r.kind != "bin"), *seats(floor_plan)]
         found = [_points_on(r) for r in self._surfaces]
         self.points: Array = np.concatenate(found or [np.empty((0, 3))])
@@ -105,9 +105,9 @@ class Viewpoints:
     def _from_elsewhere(self, views: list[tuple[Pose2, Mask]]) -> list[tuple[Pose2, Mask]]:
         """Poses from any free floor for what shows from no view where the base fits: a passage before a dresser may be
         too narrow for each of them."""
-        cells = Cells(self._plan, CELL)
-        home = self._plan.home
-        floor = reached(static_distances(cells, self._plan), CELL, cells.cell(home.x, home.y))
+        cells = Cells(self.plan, CELL)
+        home = self.plan.home
+        floor = reached(static_distances(cells, self.plan), CELL, cells.cell(home.x, home.y))
         hidden = ~np.any(
             [np.zeros(len(self.points), bool)] + [s for p, s in views if floor[cells.cell(*p[:2])]], axis=0
         )
@@ -146,7 +146,7 @@ class Viewpoints:
 
     def visible(self, pose: Pose2, reach: float = REACH) -> Mask:
         """Which points (p,) the camera sees from a base pose: in the picture, within `reach`, nothing tall between."""
-        camera = self._camera
+        camera = self.camera
         heading = pose[2] + camera.yaw
         cos, sin = math.cos(heading), math.sin(heading)
         turn, side = math.cos(pose[2]), math.sin(pose[2])

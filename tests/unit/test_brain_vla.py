@@ -343,7 +343,9 @@ def test_search_turns_then_looks_from_elsewhere() -> None:
     feedback = m.NavigationFeedback(goal_id=turn.id, status="arrived")
     bench.send(topics.NAVIGATION_FEEDBACK, feedback)
     see(bench, 2, found=False)
+    looked = bench.now
     second = bench.next_goal(POSE, 2)
+    assert bench.now - looked < BrainConfig().settle, "what was not there needs no rest"
     bench.drove(second, "failed", "BLOCKED")
     third = bench.next_goal(POSE, 3)
     assert (third.x, third.y) != (turn.x, turn.y)

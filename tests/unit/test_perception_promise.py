@@ -44,6 +44,8 @@ def told(text: str, legible: float = LEGIBLE) -> Sight:
         # Nothing tells what it looks like: a pack first, then what has print now and then.
         ("zest", ["zest"], seen("box"), None, True),
         ("zest", ["zest"], seen("mug"), None, False),
+        ("zest", ["zest"], seen("box"), MET, False),
+        ("zest", ["zest"], seen("box", text="NEW"), told("NEW"), True),
         ("zest mug", ["zest"], seen("mug"), None, True),
         ("ketchup", ["ketchup"], seen("bottle", "red"), None, True),
         ("ketchup", ["ketchup"], seen("bottle", "white"), None, True),

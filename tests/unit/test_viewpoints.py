@@ -14,6 +14,7 @@ from common.household import Household, load_household
 from common.viewpoints import NEAR, NOMINAL, REACH, Viewpoints, viewpoints_of
 from common.whereabouts import LEAST, spread
 from services.brain.world import viewpoint_search
+from services.brain.world.floor_views import floor_views
 from services.sim.unit import head_camera
 
 SCENE = load_household("apartment")
@@ -45,6 +46,19 @@ def test_what_may_lie_flat_is_looked_for_from_near_in_the_end_and_where_it_is_to
         far.append(view)
     assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from) is None
     assert len(far) < len(looked_from) / 4
+
+
+def test_what_is_told_to_lie_on_the_floor_is_looked_for_all_over_it_before_anything_else() -> None:
+    study = next(room for room in SCENE.rooms if room.name == "study")
+    floor = floor_views(VIEWPOINTS, (study,))
+    assert all(study.outline.contains(x, y) and SCENE.surface_at(x, y) is None for x, y, _ in floor.points.tolist())
+    looked_from: list[Pose2] = []
+    while floor.covered(looked_from).mean() < 0.95:
+        view = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, floor=floor)
+        assert view is not None and floor.visible(view).any()
+        looked_from.append(view)
+    assert len(looked_from) < 8
+    assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, floor=floor) is not None
 
 
 def test_every_view_shows_something_new() -> None:

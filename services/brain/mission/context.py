@@ -27,6 +27,7 @@ from services.brain.mission.mission import Failure, GripperState, Heard, Mission
 from services.brain.mission.peers import Peers
 from services.brain.mission.voice import Voice
 from services.brain.tree.path import plan_step
+from services.brain.world.floor_views import floor_views
 
 
 class Context:
@@ -88,15 +89,24 @@ class Context:
         """How likely an item is at each of the viewpoints' points (p,), by what was seen over the days."""
         return likelihood(item, self.io.household, self.sightings.rows, self.sightings.date, self.viewpoints)
 
-    def told_points(self, item: str) -> Mask:
-        """Which of the viewpoints' points (p,) are where the person said that the item is."""
+    def told_place(self, item: str) -> str:
+        """Where the person said that the item is, as `take_place` has it; "" for nowhere."""
         home, steps = self.io.household, self.mission.planning.steps
         place, _ = take_place(normalise(self.mission.search.chosen.get(item, item)), home)
         gone = (
             a.target for a, b in pairwise(steps) if a.action == "navigate" and b.action == "find" and b.object == item
         )
-        place = place.removesuffix(f" {FLOOR}") or place_named(normalise(next(gone, "")), home)
-        return points_at(place, home, self.viewpoints)
+        return place or place_named(normalise(next(gone, "")), home)
+
+    def told_points(self, item: str) -> Mask:
+        """Which of the viewpoints' points (p,) are where the person said that the item is."""
+        return points_at(self.told_place(item), self.io.household, self.viewpoints)
+
+    def told_floor(self, item: str) -> Viewpoints | None:
+        """Views of the floor where the person said that the item lies there, or is in a room."""
+        place, rooms = self.told_place(item), self.io.household.rooms
+        there = tuple(r for r in rooms if place in (FLOOR, r.name, f"{r.name} {FLOOR}"))
+        return floor_views(self.viewpoints, there) if there else None
 
     @property
     def objects(self) -> list[m.WorldObject]:

@@ -79,7 +79,7 @@ def look_closer(
         Settle("settle", ctx),
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_CLOSER_LOOK, task),
     )
-    return Retry("look_closer", ctx, look, most - 1, again=lambda: bool(left(ctx)))
+    return Retry("look_closer", ctx, look, most - 1, again=lambda: bool(left(ctx)), at_once=True)
 
 
 def promising(ctx: Context) -> list[m.WorldObject]:

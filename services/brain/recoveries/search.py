@@ -63,7 +63,7 @@ def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
     )
     last = number == ctx.config.max_retry_attempts and may_lie_flat(task.item, ctx.io.household)
     retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1 + FROM_NEAR * last
-    return Retry("attempt", ctx, look, retries, again=lambda: more_to_see(ctx), name=label, free=lambda: kept_away(ctx))
+    return Retry("attempt", ctx, look, retries, lambda: more_to_see(ctx), label, lambda: kept_away(ctx), at_once=True)
 
 
 def can_go_on(ctx: Context) -> bool:

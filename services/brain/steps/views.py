@@ -75,8 +75,9 @@ class MoveToViewpoint(GoAndLook):
         looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
         if self._elsewhere:
             likely, flat = ctx.likelihood(self._item), may_lie_flat(self._item, ctx.io.household)
+            floor, missed = ctx.told_floor(self._item), mission.search.unreached
             self.view = viewpoint_search.elsewhere(
-                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely, told, flat
+                ctx.io.household, ctx.viewpoints, pose, looked_from, missed, likely, told, flat, floor
             )
         else:
             self.view = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)

@@ -36,7 +36,8 @@ class Selector(composites.Selector):
 class Retry(decorators.Decorator):
     """Runs its child again after a failure, at most `retries` times, a settle later, if `again()` agrees.
 
-    `free()`: the failure at hand was no try, and counts for none.
+    `free()`: the failure at hand was no try, and counts for none. `at_once`: there is nothing to wait for, as after a
+    look that has shown nothing.
     """
 
     def __init__(
@@ -48,10 +49,12 @@ class Retry(decorators.Decorator):
         again: Callable[[], bool],
         name: str = "",
         free: Callable[[], bool] = lambda: False,
+        at_once: bool = False,
     ) -> None:
         super().__init__(name=shown(node_id, name), child=child)
         self.node_id = node_id
         self._ctx, self._retries, self._again, self._free = ctx, retries, again, free
+        self._pause = 0.0 if at_once else ctx.config.settle
         self.used = 0
         self._resume_at = 0.0
 
@@ -71,7 +74,7 @@ class Retry(decorators.Decorator):
         if (self.used >= self._retries and not free) or not self._again():
             return self.decorated.status
         self.used += not free
-        self._resume_at = self._ctx.now + self._ctx.config.settle
+        self._resume_at = self._ctx.now + self._pause
         self.feedback_message = f"retry {self.used} of {self._retries}"
         self._ctx.note(f"{self.name}: {self.feedback_message}")
         return Status.RUNNING

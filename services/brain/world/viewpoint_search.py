@@ -26,6 +26,8 @@ AMPLE = 0.48
 takes of it. Where a surface shows from narrower places only, these are taken in the end."""
 CANDIDATES = 6
 """Viewpoints of which it is worked out how the search would go on from them [count]; chosen: twelve are no better."""
+FLOOR_WORTH = 0.25
+"""What a point of the floor counts, by one of a table [-]. Chosen: fewer than four are a corner that nearly shows."""
 TRIES = 2
 """Times that a viewpoint is driven to in vain before it is given up [count]."""
 
@@ -46,25 +48,28 @@ def elsewhere(
     likelihood: Array | None = None,
     told: Mask | None = None,
     flat: bool = False,
+    floor: Viewpoints | None = None,
 ) -> Pose2 | None:
     """The viewpoint to go to for what is found soonest on the whole way; None when everything has been looked at.
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
-    takes it. The points (p,) where it is `told` to be come first, sofas and beds last; where it may lie `flat` these
-    points, and in the end the other tables and shelves, are looked at from near as well.
+    takes it. The points (p,) where it is `told` to be come first, then the `floor` there, sofas and beds last; where it
+    may lie `flat` these points, and in the end the other tables and shelves, are looked at from near as well.
     """
     views = _Views(floor_plan, viewpoints, likelihood)
     unseen, far, failed = _unseen(viewpoints, looked_from), _unseen(viewpoints, looked_from, NEAR), Counter(unreached)
     at = told if told is not None else np.zeros(len(unseen), bool)
-    orders = [(unseen * at, False), (far * at, True), (unseen * viewpoints.listed, False), (unseen, False)]
-    orders = [*orders, (far * viewpoints.listed, True)] if flat else [o for o in orders if not o[1]]
+    shows, near = viewpoints.shows, viewpoints.near if flat else np.zeros_like(viewpoints.shows)
+    orders: list[tuple[_Views, Mask, Array]] = [(views, shows, unseen * at), (views, near, far * at)]
+    if floor is not None:
+        orders.append((_Views(floor_plan, floor, None), floor.shows, FLOOR_WORTH * _unseen(floor, looked_from)))
+    listed = viewpoints.listed
+    orders += [(views, shows, unseen * listed), (views, shows, unseen), (views, near, far * listed)]
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        left = np.array([pose not in tried for pose in viewpoints.poses], bool)
-        for (worth, near), room in product(orders, (AMPLE, 0.0)):
-            shows = viewpoints.near if near else viewpoints.shows
-            if (found := views.next(here, shows, worth, left & (views.room >= room))) is not None:
+        for (some, shown, worth), room in product(orders, (AMPLE, 0.0)):
+            if (found := some.next(here, shown, worth, tried, room)) is not None:
                 return found
     return None
 
@@ -89,12 +94,14 @@ class _Views:
         self.room: Array = self._ground.distance[self._cells]
         self._lengths: dict[Point, Array] = {}
 
-    def next(self, here: Pose2, shows: Mask, worth: Array, left: Mask) -> Pose2 | None:
-        """The one of the viewpoints that are `left` (v,) with which a search finds soonest; None when none is worth it.
+    def next(self, here: Pose2, shows: Mask, worth: Array, tried: Collection[Pose2], room: float) -> Pose2 | None:
+        """The one of the viewpoints not `tried` with so much `room` with which a search finds soonest; None when none
+        is worth it.
 
         `shows` (v, p): what counts as shown, `worth` (p,): what each point counts. By what each of the best shows for
         the way there alone, a shelf beside the robot would be passed by and come back to in the end.
         """
+        left = np.array([pose not in tried for pose in self._poses], bool) & (self.room >= room)
         best = self._best(here, shows, worth, left, CANDIDATES)
         first = min(best, key=lambda n: self._delay(here, n, shows, worth, left), default=None)
         return self._poses[first] if first is not None else None

@@ -15,9 +15,10 @@ LITTLE = 0.04
 PROMISING = LIKELY
 """Promise from which an object is looked at before the search goes on. Chosen: as likely as one is asked about."""
 RARELY, ELSEWHERE, OTHERWISE, NAMED = 0.25, 0.6, 0.5, 0.05
-"""What is left of the promise of what is of another kind when no word tells of looks, of what was read on this side in
-vain, of what has not the colour that was said or that is usual, and of what has other words on it. Chosen: a mug has
-print in one of four, a box shows it on another side in one of two; the last is a misread word in twenty."""
+"""What is left of the promise of what is of another kind, or shows a side with no print at all, when no word tells of
+looks, of what was read on this side in vain, of what has not the colour that was said or that is usual, and of what has
+other words on it. Chosen: a mug has print in one of four, a pack with a blank side on another in no more, a box shows
+the word on another side in one of two; the last is a misread word in twenty."""
 
 
 def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | None, household: Household) -> float:
@@ -36,7 +37,8 @@ def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | Non
         return 0.0
     # A pack may have any colour, and "green" may be what is printed on it.
     found = max(OTHERWISE * packed, looks_like(query, o, household), OTHERWISE * LIKELY if other else 0.0)
-    if not describes(query, household) and o.kind not in PACKED:
+    blank = sight is not None and sight.read and not sight.lines
+    if not describes(query, household) and (o.kind not in PACKED or blank):
         found *= RARELY
     if other:
         found *= OTHERWISE
