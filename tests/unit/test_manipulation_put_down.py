@@ -1,5 +1,6 @@
 """What the hand cannot bring as it grasped it is tipped, where it does not fall then."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ import pytest
 
 from common.geometry import Array
 from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.arm.trajectory import whole
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
@@ -86,3 +88,24 @@ def test_it_is_tipped_only_as_far_as_its_middle_does_not_fall_back(size: tuple[f
     poses = tipped(from_above(size), (0.5, 0.0), 0.0, math.radians(30))
     assert bool(poses) == may
     assert all(pose.raised <= FALLS for pose in poses)
+
+
+@pytest.mark.parametrize(
+    ("size", "up", "tilt", "height"),
+    [((0.06, 0.06, 0.2), 0.03, 0.8, 0.76), ((0.07, 0.05, 0.16), 0.03, 0.3, 0.5), ((0.05, 0.05, 0.16), 0.05, 0.8, 0.9)],
+)
+def test_what_hangs_lower_than_believed_comes_over_the_edge(
+    size: tuple[float, float, float], up: float, tilt: float, height: float
+) -> None:
+    hand, lower = approach_rotation(0.0, tilt), 0.05
+    held = GraspedObject("thing", "", hand, np.array([0.0, 0.0, up]), size, 0.05, 0.0)
+    table = Obstacle((0.76, 0.0, height - SLAB / 2), (0.6, 1.6, SLAB), 0.0)
+    path = whole(plan_place(PLANNER, held, [(0.62, 0.0), (0.55, 0.1)], height, DROP, [table], REST).reach)
+    arm = PLANNER.arm
+    arm.set_obstacles([table], 0.0)
+    arm.hold(*held.box(lower))
+    try:
+        met = [arm.collides(a + s * (b - a)) for a, b in itertools.pairwise(path) for s in np.linspace(0.0, 1.0, 20)]
+    finally:
+        arm.hold(None)
+    assert not any(met)

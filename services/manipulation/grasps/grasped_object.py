@@ -94,11 +94,12 @@ class GraspedObject:
             return half
         return min(half, float(np.quantile(np.abs(self.points @ turn[2]), SEEN)))
 
-    def box(self) -> tuple[Array, Array, Array]:
+    def box(self, lower: float = 0.0) -> tuple[Array, Array, Array]:
         """Half extents (3,) [m] of the object's collision box along its own axes, or the hand's where those are only
-        guessed, its centre (3,) and rotation (3, 3) in the frame of the pinch point."""
-        center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
-        half, turned = np.array(self.size) / 2, self.rotation.T @ yaw_matrix(self.yaw)
+        guessed, its centre (3,) and rotation (3, 3) in the frame of the pinch point; `lower`: how much farther down it
+        reaches than believed [m]."""
+        center = self.rotation.T @ (np.array([0, 0, (self.size[2] - lower) / 2]) - self.offset)
+        half, turned = np.array([*self.size[:2], self.size[2] + lower]) / 2, self.rotation.T @ yaw_matrix(self.yaw)
         if self.guessed:
             half, turned = np.abs(turned) @ half, np.eye(3)
         return np.maximum(half - SHRINK, LEAST_HALF), center, turned

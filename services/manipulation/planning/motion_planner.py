@@ -40,6 +40,9 @@ at 2 m down to that of one at arm's length; the arm itself lags by up to .03 rad
 NEAR = 0.05
 """Distance [m] from what is known around up to which the arm, and what it holds, goes slowly. Chosen: the error of
 localisation, 3 cm, with the lag of the arm and what a path moves between two collision checks."""
+NEAREST = 0.02
+"""How near [m] to what it goes over something in the hand may be that hangs lower than believed: a windmill hung askew
+by 43 degrees and met the edge of its cabinet from the side; an apple and a whisk hung 49 and 55 mm lower."""
 LEAVING = 0.15
 """Way [m] of the hand from where it has lifted something on which it may meet what stands around. Chosen: at the speed
 of transit a bowl that hung askew met its shelf with 67 N in the 60 ms until the arm stood."""
@@ -191,6 +194,27 @@ class Planner:
             paths = (connect(self.arm, start, goal, rng) for goal in goals if not self.arm.collides(goal))
             path = next((path for path in paths if path is not None), None)
             return None if path is None else self.legs(path, around, LEAVING)
+        finally:
+            self.arm.hold(None)
+
+    def bring(
+        self, held: GraspedObject, start: Array, goal: Array, around: Sequence[Obstacle], above: float
+    ) -> list[Leg]:
+        """A path with the object in hand to where it is `above` [m] what it is put on; empty if there is no way.
+
+        It goes over the edge of that as if the object hung lower by nearly as much, or by half of it, where it can.
+        """
+        try:
+            for lower in (max(0.0, above - NEAREST), above / 2, 0.0):
+                self.arm.hold(*held.box(lower))
+                self.surround(around, goal, [start])
+                # No way is looked for from, or to, where only the longer object would touch something.
+                if lower and (self.arm.collides(start) or self.arm.collides(goal)):
+                    continue
+                if path := connect(self.arm, start, goal, self.rng()):
+                    self.arm.hold(*held.box())
+                    return self.legs(path, around)
+            return []
         finally:
             self.arm.hold(None)
 

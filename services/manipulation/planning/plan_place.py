@@ -133,11 +133,7 @@ def _try_place(
     if isinstance(way, str):
         return way
     high, down = way.high, way.down
-    arm.hold(*held.box())
-    planner.surround(around, high, [now])
-    there = connect(arm, now, high, rng)
-    reach = planner.legs(there, around) if there is not None else []
-    arm.hold(None)
+    reach = planner.bring(held, now, high, around, way.rise)
     if not reach:
         return "no path"
     stands = Obstacle((*pose.spot, height + held.size[2] / 2), held.size, held.yaw + pose.spin)
@@ -157,11 +153,12 @@ def _try_place(
 
 @dataclass(frozen=True)
 class _Down:
-    """The hand's pose where it lets go, `high` (7,) above it, the straight way `down` from there."""
+    """The hand's pose where it lets go, `high` (7,) above it by `rise` [m], the straight way `down` from there."""
 
     target: Pose
     high: Array
     down: list[Array]
+    rise: float
 
 
 def _set_down(planner: Planner, held: GraspedObject, pose: PutDown, height: float, now: Array) -> "_Down | str":
@@ -187,7 +184,7 @@ def _set_down(planner: Planner, held: GraspedObject, pose: PutDown, height: floa
         arm.hold(*held.box())
         beside = arm.collides(high)
         arm.hold(None)
-        return "object collides above the spot" if beside else _Down(target, high, down)
+        return "object collides above the spot" if beside else _Down(target, high, down, rise)
     return why
 
 
