@@ -187,9 +187,9 @@ def outcome(said: str, heard: Recognition) -> Outcome:
     if (words := heard if command else as_heard(heard, LISTENING)) is None:
         return "not understood"
     weighed = weigh(words)
-    if not (command or weighed.steps or weighed.detail == DOUBTFUL):
+    if not (command or weighed.steps or weighed.suggestion):
         return "not understood"
-    doubted = weighed.suggestion if weighed.detail == DOUBTFUL else ""
+    doubted = weighed.suggestion if weighed.detail == DOUBTFUL or not command else ""
     wanted, found = _steps(said), _steps(doubted or words.text)
     if doubted or not command or heard.verdict == "ask" or heard.confidence < SURE:
         return "asked" if found == wanted else "asked wrongly"

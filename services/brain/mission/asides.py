@@ -96,12 +96,11 @@ class Asides:
         return True
 
     def _weighed(self, command: m.VoiceCommand | None, plan: m.ActionPlan) -> None:
-        """Ask about the transcription for which there is a plan."""
+        """Ask about the transcription for which there is a plan, or about what the planner takes it for."""
         ctx = self._ctx
         if command is None or ctx.mission.active or ctx.voice.command is not None:
             return
-        texts = [command.text, *(one.text for one in command.alternatives)]
-        if plan.suggestion in texts or plan.steps:
+        if plan.suggestion or plan.steps:
             text = plan.suggestion or command.text
             ctx.voice.command = msgspec.structs.replace(command, text=text, confidence=0.0, alternatives=[])
         else:
