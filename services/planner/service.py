@@ -7,11 +7,12 @@ import msgspec
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
+from common.chat import ChatError, NoAnswer
 from common.goal_inbox import GoalInbox
 from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
 from services.planner.language_model.backend import Backend
-from services.planner.language_model.llm import Call, LlmError, NoAnswer, Reply
+from services.planner.language_model.llm import Call, Reply
 from services.planner.transcriptions import chosen
 from services.planner.world import World, believed
 
@@ -101,7 +102,7 @@ class PlannerService:
                 raise NoAnswer("timed out")
             reply = pending.job.result()
             self._backend.answered()
-        except LlmError as error:
+        except ChatError as error:
             if isinstance(error, NoAnswer):
                 self._backend.failed(str(error), now)
             return self._by_grammar(pending.request, pending.world, pending.rejected, f"llm: {error}")

@@ -91,7 +91,7 @@ def test_an_endpoint_that_does_not_answer_is_given_up_in_time(endpoint: Endpoint
 
 @pytest.mark.parametrize(
     ("answer", "message"),
-    [(lambda h: send(h, {}, 500), "status 500"), (lambda h: send(h, b"<html>"), "no chat endpoint|no usable answer")],
+    [(lambda h: send(h, {}, 500), "status 500"), (lambda h: send(h, b"<html>"), "no chat completion|no usable answer")],
 )
 def test_a_server_that_is_none_is_named(endpoint: Endpoint, answer: Answer, message: str) -> None:
     with pytest.raises(GrounderError, match=message):
@@ -100,7 +100,7 @@ def test_a_server_that_is_none_is_named(endpoint: Endpoint, answer: Answer, mess
 
 def test_where_nobody_listens_the_address_is_named() -> None:
     url = f"http://127.0.0.1:{free_port()}/v1"
-    with pytest.raises(GrounderError, match="nobody answers at"):
+    with pytest.raises(GrounderError, match=f"nothing from {url}: no connection"):
         Vision(url, "eye", "", 5.0).choose(Question("x", PICTURE, TWO))
 
 

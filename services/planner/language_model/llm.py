@@ -2,12 +2,11 @@
 
 import asyncio
 import importlib
-import re
-from collections.abc import Callable
 from typing import Any
 
 import msgspec
 
+from common.chat import ChatError, Endpoint, NoAnswer, complete
 from common.messages import PlanStep, RejectedPlan
 from common.time.clock import monotonic
 from services.planner.config import PlannerConfig
@@ -18,9 +17,6 @@ from services.planner.world import World
 
 POLL = 0.05
 """How often a question under way looks whether it was cancelled [s of wall time] (chosen)."""
-CONNECT = 1.0
-"""Limit for the connection [s of wall time], as for a look at the endpoint."""
-_FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)
 
 
 class Reply(msgspec.Struct):
@@ -28,14 +24,6 @@ class Reply(msgspec.Struct):
 
     steps: list[PlanStep]
     detail: str = ""
-
-
-class LlmError(Exception):
-    """No usable plan from the model: why, in a few words."""
-
-
-class NoAnswer(LlmError):
-    """Nobody was there, or not in time; other errors are about what was answered."""
 
 
 def prepare() -> None:
@@ -53,8 +41,8 @@ class Call:
 class Llm:
     """Asks the endpoint of the configuration."""
 
-    def __init__(self, config: PlannerConfig, clock: Callable[[], float] = monotonic) -> None:
-        self._config, self._clock = config, clock
+    def __init__(self, config: PlannerConfig) -> None:
+        self._config = config
 
     def plan(self, command: str, world: World, rejected: list[RejectedPlan], call: Call) -> Reply:
         """A checked plan, or one without steps and with the model's reason.
@@ -63,11 +51,11 @@ class Llm:
 
         Raises:
             NoAnswer: no answer in time, no connection, an error of the server.
-            LlmError: no JSON of the right form, or nothing possible.
+            ChatError: no JSON of the right form, or nothing possible.
         """
         config, vocabulary = self._config, Vocabulary(world, self._config)
         talk, form = messages(command, world, rejected), schema(world)
-        end = self._clock() + config.llm_timeout
+        end = monotonic() + config.llm_timeout
         wrong = ""
         for _ in range(max(1, config.llm_tries)):
             try:
@@ -75,7 +63,7 @@ class Llm:
             except TimeoutError:
                 raise NoAnswer(f"timed out after {wrong}" if wrong else "timed out") from None
             try:
-                reply = msgspec.json.decode(_FENCE.sub(r"\1", said), type=Reply)
+                reply = msgspec.json.decode(said, type=Reply)
                 reply.steps = checked(reply.steps, world, vocabulary, config.max_steps)
             except (msgspec.DecodeError, UnicodeDecodeError) as error:
                 wrong = f"malformed answer: {error}"
@@ -87,40 +75,17 @@ class Llm:
                     return reply
                 wrong = f"the rejected plan again: {again.reason}"
             talk = [*talk, {"role": "assistant", "content": said}, {"role": "user", "content": f"No: {wrong}"}]
-        raise LlmError(wrong)
+        raise ChatError(wrong)
 
     async def _complete(self, talk: list[dict[str, str]], form: dict[str, Any], end: float, call: Call) -> str:
         """The words of the answer; TimeoutError at `end`, whatever has arrived by then."""
-        asked = asyncio.ensure_future(self._ask(talk, form))
+        config = self._config
+        where = Endpoint(config.llm_url, config.llm_model, config.llm_key, config.llm_timeout, config.llm_options)
+        asked = asyncio.ensure_future(complete(where, talk, {"name": "plan", "schema": form, "strict": True}))
         while not asked.done():
-            if call.cancelled or self._clock() >= end:
+            if call.cancelled or monotonic() >= end:
                 asked.cancel()
                 await asyncio.wait({asked}, timeout=1.0)
                 raise TimeoutError
             await asyncio.wait({asked}, timeout=POLL)
         return asked.result()
-
-    async def _ask(self, talk: list[dict[str, str]], form: dict[str, Any]) -> str:
-        import openai
-
-        config = self._config
-        # Who is not there is not waited for: a connection takes milliseconds, an answer may take long.
-        patience = openai.Timeout(config.llm_timeout, connect=min(CONNECT, config.llm_timeout))
-        wanted: Any = {"type": "json_schema", "json_schema": {"name": "plan", "schema": form, "strict": True}}
-        asked: Any = talk
-        try:
-            async with openai.AsyncOpenAI(
-                base_url=config.llm_url, api_key=config.llm_key or "none", max_retries=0, timeout=patience
-            ) as client:
-                answer = await client.chat.completions.create(
-                    model=config.llm_model, messages=asked, response_format=wanted, extra_body=config.llm_options
-                )
-            return answer.choices[0].message.content or ""
-        except openai.APITimeoutError:
-            raise TimeoutError from None
-        except openai.APIStatusError as error:
-            raise NoAnswer(f"status {error.status_code}") from None
-        except openai.APIConnectionError:
-            raise NoAnswer("no connection") from None
-        except (openai.OpenAIError, ValueError, TypeError, AttributeError, IndexError) as error:
-            raise LlmError(f"no chat completion: {type(error).__name__}") from None

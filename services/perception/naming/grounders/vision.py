@@ -7,7 +7,6 @@ is no number of a mark is not believed.
 import asyncio
 import base64
 import importlib.util
-import re
 from typing import Any
 
 import msgspec
@@ -15,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from common.chat import ChatError, Endpoint, complete
 from common.rendering.encode import jpeg
 from services.perception.naming.grounders.grounder import Candidate, Choice, GrounderError, Question
 
 TRIES = 2
 """Questions asked before a malformed answer counts as none."""
-CONNECT = 2.0
-"""Limit for the connection [s]."""
 QUALITY = 85
 """JPEG quality; marks stay sharp."""
 COLOURS = ((230, 25, 75), (0, 130, 200), (245, 130, 48), (60, 180, 75), (145, 30, 180), (0, 0, 0))
@@ -30,7 +28,6 @@ ASKED = """\
 The objects in the picture have boxes with numbers. Which of them is "{phrase}"?
 Answer with JSON only: {{"number": N, "confidence": C, "reason": "..."}}. N is the number of the one object that is
 meant, 0 if none of the numbered objects is; C is how sure you are, from 0 to 1."""
-_FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)
 
 
 class Answer(msgspec.Struct):
@@ -51,7 +48,7 @@ class Vision:
             raise GrounderError("set perception.vision_model to a model of the endpoint that takes pictures")
         if importlib.util.find_spec("openai") is None:
             raise GrounderError("the package openai is missing: pip install 'tidybot-zenoh[llm]'")
-        self._url, self._model, self._key, self._timeout = url, model, key, timeout
+        self._where = Endpoint(url, model, key, timeout)
 
     def choose(self, question: Question) -> Choice:
         """The candidate whose number the model names."""
@@ -59,40 +56,23 @@ class Vision:
             return Choice(detail="nothing is in view")
         picture = marked(question.picture, question.candidates)
         try:
-            return asyncio.run(asyncio.wait_for(self._choose(question, picture), self._timeout))
+            return asyncio.run(asyncio.wait_for(self._choose(question, picture), self._where.timeout))
         except TimeoutError:
-            raise GrounderError(f"{self._url} did not answer within {self._timeout:.0f} s") from None
+            raise GrounderError(f"{self._where.url} did not answer within {self._where.timeout:.0f} s") from None
+        except ChatError as error:
+            raise GrounderError(f"nothing from {self._where.url}: {error}") from None
 
     async def _choose(self, question: Question, picture: bytes) -> Choice:
         talk: list[dict[str, Any]] = [{"role": "user", "content": _content(question.phrase, picture)}]
         wrong = ""
         for _ in range(TRIES):
-            said = await self._ask(talk)
+            said = await complete(self._where, talk, {"name": "choice", "schema": msgspec.json.schema(Answer)})
             try:
                 return checked(said, question.candidates)
             except ValueError as error:
                 wrong = str(error)
             talk += [{"role": "assistant", "content": said}, {"role": "user", "content": f"That is wrong: {wrong}"}]
         raise GrounderError(f"no usable answer: {wrong}")
-
-    async def _ask(self, talk: list[dict[str, Any]]) -> str:
-        import openai
-
-        patience = openai.Timeout(self._timeout, connect=min(CONNECT, self._timeout))
-        asked: Any = talk
-        form: Any = {"type": "json_schema", "json_schema": {"name": "choice", "schema": msgspec.json.schema(Answer)}}
-        try:
-            async with openai.AsyncOpenAI(
-                base_url=self._url, api_key=self._key or "none", max_retries=0, timeout=patience
-            ) as client:
-                answer = await client.chat.completions.create(model=self._model, messages=asked, response_format=form)
-            return answer.choices[0].message.content or ""
-        except openai.APIStatusError as error:
-            raise GrounderError(f"{self._url} answers with status {error.status_code}") from None
-        except openai.APIConnectionError:
-            raise GrounderError(f"nobody answers at {self._url}") from None
-        except (openai.OpenAIError, ValueError, TypeError, AttributeError, IndexError) as error:
-            raise GrounderError(f"{self._url} is no chat endpoint: {type(error).__name__}") from None
 
 
 def checked(said: str, candidates: tuple[Candidate, ...]) -> Choice:
@@ -102,7 +82,7 @@ def checked(said: str, candidates: tuple[Candidate, ...]) -> Choice:
         ValueError: it is no JSON of the right form, or names no mark.
     """
     try:
-        answer = msgspec.json.decode(_FENCE.sub(r"\1", said), type=Answer)
+        answer = msgspec.json.decode(said, type=Answer)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"malformed answer: {error}") from None
     if not 0 <= answer.number <= len(candidates):
