@@ -1,4 +1,4 @@
-"""Ten minutes of driving with drifting wheels: navigation's pose against the truth, plain odometry as the peer.
+"""Ten minutes of driving with drifting wheels: navigation's pose against the truth.
 
 `python -m bench.localisation --seconds 600 --seeds 1`. Exit 1 when an error is above 3 cm or 1.5 degrees RMS.
 
@@ -104,7 +104,7 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
     rng = np.random.default_rng(seed)
     goals = [p.name for p in robot.scene.places]
     goals += [r.name for r in robot.scene.receptacles if r.approach and r.name != robot.scene.delivery]
-    estimate, still, wheels = Errors("navigation/pose"), Errors("the same, at rest at goals"), Errors("base/odom")
+    estimate, still = Errors("navigation/pose"), Errors("the same, at rest at goals")
     travelled, failed, last = 0.0, 0, robot.base()
     status, told = robot.last(topics.NAVIGATION_STATUS), 0.0
     while robot.now < seconds:
@@ -116,16 +116,13 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
         travelled += math.dist(last[:2], true[:2])
         last = true
         estimate.add(pose, true)
-        wheels.add(robot.last(topics.ODOMETRY), true)
         if status.status == "arrived":
             still.add(pose, true)
         if robot.now - told >= 60.0:
             told = robot.now
-            print(
-                f"  {told:.0f} s: {estimate.rms()[0] * 100:.2f} cm, wheels {wheels.rms()[0] * 100:.1f} cm", flush=True
-            )
+            print(f"  {told:.0f} s: {estimate.rms()[0] * 100:.2f} cm", flush=True)
     print(f"seed {seed}: {robot.goals} goals, {failed} failed, {travelled:.0f} m in {robot.now:.0f} s")
-    return [estimate, still, wheels], robot
+    return [estimate, still], robot
 
 
 def carried(seed: int) -> list[tuple[str, float]]:

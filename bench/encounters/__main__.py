@@ -1,8 +1,8 @@
 """Two robots meet in one flat: do both arrive, how near do they come, what does it cost? `python -m bench.encounters`.
 
 Two whole navigation services drive two bodies in one MuJoCo world, with the lidars and wheels of the simulation. Every
-meeting is driven with what robots tell each other of their ways and without it, and by each of the two alone, which is
-what time lost is counted against. Exit 1 after a touch or a robot that did not arrive, with the exchange.
+meeting is driven by the two and by each of them alone, which is what time lost is counted against. Exit 1 after a touch
+or a robot that did not arrive.
 """
 
 import argparse
@@ -20,7 +20,7 @@ MET = 1.5
 
 @dataclass
 class Tally:
-    """Results of one kind of meeting, with or without the exchange."""
+    """Results of one kind of meeting."""
 
     meetings: int = 0
     met: int = 0
@@ -52,29 +52,24 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=10, help="meetings of each kind (default %(default)s)")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", default="", help="kinds whose name contains this")
-    parser.add_argument("--with", dest="ways", choices=("both", "exchange", "nothing"), default="both")
     args = parser.parse_args()
-    ways = {"both": (True, False), "exchange": (True,), "nothing": (False,)}[args.ways]
-    tallies = {(kind, way): Tally() for kind in KINDS if args.only in kind for way in ways}
-    for kind in [k for k in KINDS if args.only in k]:
+    tallies = {kind: Tally() for kind in KINDS if args.only in kind}
+    for kind, tally in tallies.items():
         for seed in range(args.first, args.first + args.seeds):
             meeting = KINDS[kind](np.random.default_rng([seed, 17]))
             drivers = [n for n in (0, 1) if meeting.goals[n] is not None]
-            alone = [Pair(meeting, False, alone=n).run().took[0] for n in drivers]
-            for way in ways:
-                outcome = Pair(meeting, way).run()
-                tallies[kind, way].add(seed, outcome, alone)
-                print(
-                    f"  {kind}, seed {seed}, {'told' if way else 'not told'}: {outcome} alone {alone}", file=sys.stderr
-                )
+            alone = [Pair(meeting, alone=n).run().took[0] for n in drivers]
+            outcome = Pair(meeting).run()
+            tally.add(seed, outcome, alone)
+            print(f"  {kind}, seed {seed}: {outcome} alone {alone}", file=sys.stderr)
     heads = ("meetings", "met", "arrived", "touched", "nearest", "median", "lost s", "most")
-    print(f"{'':28}" + " ".join(f"{head:>8}" for head in heads))
-    for (kind, way), tally in tallies.items():
-        print(f"{kind + (', told' if way else ', not told'):28}{tally.row()}")
-    for (kind, way), tally in tallies.items():
+    print(f"{'':16}" + " ".join(f"{head:>8}" for head in heads))
+    for kind, tally in tallies.items():
+        print(f"{kind:16}{tally.row()}")
+    for kind, tally in tallies.items():
         for note in tally.notes:
-            print(f"{kind}{', told' if way else ', not told'}: {note}")
-    return int(any(t.touched or t.arrived < t.meetings for (_, way), t in tallies.items() if way))
+            print(f"{kind}: {note}")
+    return int(any(t.touched or t.arrived < t.meetings for t in tallies.values()))
 
 
 if __name__ == "__main__":

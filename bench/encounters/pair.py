@@ -89,7 +89,7 @@ class Robot:
 class Pair:
     """The two robots of a meeting, or with `alone` one of them, in one simulated flat."""
 
-    def __init__(self, meeting: Meeting, exchange: bool, alone: int | None = None) -> None:
+    def __init__(self, meeting: Meeting, alone: int | None = None) -> None:
         self.meeting = meeting
         numbers = (0, 1) if alone is None else (alone,)
         first, *others = numbers
@@ -111,7 +111,7 @@ class Pair:
         self._world = InProcess(self._sim, sim_io, self._clock)
         for n in numbers:
             own = io(NavigationService, n)
-            own.robot = NAMES[n] if exchange else ""
+            own.robot = NAMES[n]
             self._world.add(NavigationService(NavigationConfig(), own), own)
         bodies = zip(numbers, self._sim.physics.robots, strict=True)
         self.robots = {n: Robot(buses[n], body.joints) for n, body in bodies}

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from bench.fuzz.payloads import Payloads
+from cli.link import Link
 from cli.processes.ports import free_port
 from cli.processes.services import SERVICES
 from common import messages as m
@@ -107,24 +108,17 @@ class Storm:
         module = next(s.module for s in SERVICES if s.name == name)
         return self.here.log(module)[-3000:]
 
-    def health(self) -> dict[str, m.Health]:
-        """What every process says of itself."""
-        found = {}
-        for payload in delivery.fetch(self.session, topics.HEALTH.key, timeout=5.0).values():
-            record = codec.decode_as(m.Health, payload)
-            found[record.name] = record
-        return found
-
     def settle(self) -> dict[str, m.Health]:
         """The health of all, newer than the last payload.
 
         Raises:
             AssertionError: a process no longer tells its health.
         """
-        before = {n: h.uptime for n, h in self.health().items()}
+        link = Link(self.session, self.here.connect)
+        before = {n: h.uptime for n, h in link.health().items()}
 
         def newer() -> dict[str, m.Health] | None:
-            now = self.health()
+            now = link.health()
             fresh = all(n in now and now[n].uptime > before.get(n, 0.0) + 2.0 for n in self.names)
             return now if fresh else None
 

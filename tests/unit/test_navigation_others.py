@@ -88,7 +88,7 @@ def run(pair: Pair, listen_to: int) -> tuple[float, list[m.DriveIntent]]:
 def test_two_that_meet_in_a_corridor_both_arrive() -> None:
     home = corridor()
     starts, goals = ((3.5, 2.0, 0.0), (9.5, 2.0, 3.1)), ((11.0, 2.0, 0.0), (2.0, 2.0, 3.1))
-    nearest, said = run(Pair(Meeting(home, starts, goals), exchange=True), listen_to=1)
+    nearest, said = run(Pair(Meeting(home, starts, goals)), listen_to=1)
     assert nearest > 0.03
     assert any(told.gives_way_to == ["anna"] for told in said)
 
@@ -96,9 +96,9 @@ def test_two_that_meet_in_a_corridor_both_arrive() -> None:
 def test_one_with_nothing_to_do_makes_way_and_one_at_work_does_not() -> None:
     flat = load_household("apartment")
     meeting = Meeting(flat, ((2.5, -0.75, 0.0), (1.2, -0.75, 0.0)), (None, (3.8, -0.9, 0.0)))
-    nearest, _ = run(Pair(meeting, exchange=True), listen_to=1)
+    nearest, _ = run(Pair(meeting), listen_to=1)
     assert nearest > 0.03
-    working = Pair(meeting, exchange=True)
+    working = Pair(meeting)
     state = m.BrainState(state="GRABBING", mission_id="m1", command="grab")
     working.robots[0].bus.send(topics.BRAIN_STATE, state)
     before = working.robots[0].true
@@ -151,7 +151,7 @@ def test_every_kind_of_meeting_can_be_drawn() -> None:
 def test_one_that_is_braked_while_it_should_make_way_is_planned_round() -> None:
     """Somebody has pressed its stop: it says that it stays, instead of having the other one wait for it."""
     meeting = Meeting(load_household("apartment"), ((1.3, -0.75, 0.0), (0.2, -0.75, 0.0)), (None, (2.0, -1.5, 0.0)))
-    pair = Pair(meeting, exchange=True)
+    pair = Pair(meeting)
     pair.robots[0].bus.send(topics.ROBOT_STOP, m.RobotStop(reason="test", source="test"))
     _, intents = run(pair, listen_to=0)
     said = [told.state for told in intents]
