@@ -44,8 +44,8 @@ ALONG = 0.55
 """Step from one viewpoint to the next along an edge [m]; chosen: a picture at 0.5 m shows about twice as much."""
 LOOK_COST = 2.0
 """What a look costs beside the way to it [m of way]; chosen: settling and a picture take as long as 1 m of driving."""
-LEAST_GAIN = 1.0
-"""New points that make a viewpoint worth its way [count]."""
+LEAST_GAIN = 3.0
+"""New points that make a viewpoint worth its way [count]. Chosen: beside fewer enough of a thing shows."""
 SEE_OVER = 0.3
 """Furniture that ends less than this below the camera hides what is behind it [m]."""
 APART, PATCH = 4, 2

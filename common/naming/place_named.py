@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.household import Household
+from common.messages import PossibleObject, WorldObject
 from common.naming.names import normalise
 
 _PLACE = re.compile(
@@ -36,6 +37,14 @@ def place_named(words: str, household: Household) -> str:
     rooms = [(r.name, r.aliases) for r in household.rooms]
     seats = [(f.name, (_seat(f.name), *_aliases(_seat(f.name), household))) for f in household.furniture]
     return _named(words, [(r.name, r.aliases) for r in household.receptacles] + rooms + seats)
+
+
+def is_at(o: WorldObject | PossibleObject, place: str, household: Household) -> bool:
+    """An object stands on the receptacle or in the room of that name, or on the floor, there or anywhere."""
+    if o.on == place or (place == FLOOR and not o.on):
+        return True
+    room = household.room_at(o.position[0], o.position[1])
+    return room is not None and (room.name == place or (f"{room.name} {FLOOR}" == place and not o.on))
 
 
 def _seat(furniture: str) -> str:

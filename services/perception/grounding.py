@@ -12,7 +12,7 @@ from common.household import Household
 from common.messages import PossibleObject, WorldObject
 from common.naming.likeness import LEAST, PLAIN, likeness, partly
 from common.naming.names import ALIKE, match_object, normalise, unnumbered
-from common.naming.place_named import FLOOR, take_place
+from common.naming.place_named import is_at, take_place
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
@@ -123,14 +123,6 @@ def _plain(query: str, synonyms: Mapping[str, str]) -> str:
     for said, meant in synonyms.items():
         words = re.sub(rf"\b{re.escape(normalise(said))}\b", meant, words)
     return words
-
-
-def is_at(o: WorldObject, place: str, household: Household) -> bool:
-    """An object stands on the receptacle or in the room of that name, or on the floor, there or anywhere."""
-    if o.on == place or (place == FLOOR and not o.on):
-        return True
-    room = household.room_at(o.position[0], o.position[1])
-    return room is not None and (room.name == place or (f"{room.name} {FLOOR}" == place and not o.on))
 
 
 def _by_side(found: Sequence[WorldObject], side: str, base: Pose2) -> list[WorldObject]:

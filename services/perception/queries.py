@@ -10,8 +10,9 @@ from common import topics
 from common.bus.port import Io
 from common.goal_inbox import GoalInbox
 from common.naming.likeness import PLAIN
+from common.naming.place_named import is_at
 from services.perception.config import PerceptionConfig
-from services.perception.grounding import Grounding, as_called, ground, is_at, may_be_meant, parsed, possible
+from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming
 from services.perception.naming.promise import PROMISING
 from services.perception.tracking.beliefs import Beliefs

@@ -7,6 +7,8 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.naming.likeness import LEAST, LIKELY
+from services.brain.steps.identify import MANY, candidates
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, QUERY, SPEECH, answer_plan, asked, planned, reply
 
@@ -117,8 +119,8 @@ def looks_until(bench: Bench, question: str, likeness: float = 0.1) -> int:
     ("item", "likeness", "least", "most"),
     [
         ("gizmo from the desk", 0.1, 1, 1), ("comb from the desk", 0.2, 1, 1), ("comb", 0.2, 4, 8),
-        ("yellow gizmo", 0.1, 2, 8), ("magnifying comb", 0.1, 2, 8), ("comb", 0.1, 9, 1000),
-        ("comb from the desk", 0.1, 9, 1000),
+        ("yellow gizmo", 0.1, 2, 8), ("magnifying comb", 0.1, 2, 8), ("comb", 0.1, 9, 16),
+        ("comb from the desk", 0.1, 2, 8), ("comb from the study shelf", 0.1, 9, 20),
     ],
 )  # fmt: skip
 def test_the_better_it_fits_and_the_more_was_looked_at_the_sooner_it_is_asked_about(
@@ -288,3 +290,23 @@ def test_before_everything_was_looked_at_few_are_asked_about_that_half_fit() -> 
         goal = bench.next_goal(topics.NAV_GOAL, count)
         bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
     assert bench.texts(SPEECH).count(ASKED) == 2
+
+
+@pytest.mark.parametrize(
+    ("questions", "looks", "least", "asked"),
+    [
+        (1, 0, LIKELY, "object-1"), (1, MANY, LIKELY, "object-1 object-2"), (2, 0, LIKELY, ""),
+        (2, MANY, LIKELY, "object-1"), (3, MANY, LIKELY, ""), (3, MANY, LEAST, "object-1 object-2"),
+        (5, MANY, LEAST, ""),
+    ],
+)  # fmt: skip
+def test_the_more_was_asked_the_likelier_it_has_to_be_until_all_was_looked_at(
+    questions: int, looks: int, least: float, asked: str
+) -> None:
+    ctx = planned().brain.context
+    search = ctx.mission.search
+    search.questions, search.visited = questions, [(0.0, 0.0, 0.0)] * looks
+    search.perhaps = [maybe("object-1", 0.31), maybe("object-2", 0.17), maybe("object-3", 0.14, position=RED, on="")]
+    assert " ".join(p.id for p in candidates(ctx, least)) == asked
+    if least == LEAST:
+        assert [p.id for p in candidates(ctx, least, place="floor")] == ["object-3"] * (questions < 5)

@@ -35,30 +35,28 @@ def test_the_search_shows_every_surface_and_ends() -> None:
 
 def test_what_may_lie_flat_is_looked_for_from_near_in_the_end_and_where_it_is_told_to_be_first() -> None:
     looked_from: list[Pose2] = []
-    while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, flat=True)) is not None:
+    while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, near=True)) is not None:
         looked_from.append(view)
     assert VIEWPOINTS.covered(looked_from, NEAR)[VIEWPOINTS.listed].mean() > 0.9
     told = VIEWPOINTS.surface == VIEWPOINTS.surface[0]
     far: list[Pose2] = []
-    while not VIEWPOINTS.covered(far, NEAR)[told].mean() > 0.9:
-        view = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, far, told=told, flat=True)
-        assert view is not None and VIEWPOINTS.visible(view)[told].any()
+    while (view := viewpoint_search.there(SCENE, VIEWPOINTS, HOME, far, (), told, near=True)) is not None:
+        assert VIEWPOINTS.visible(view)[told].any()
         far.append(view)
+    assert VIEWPOINTS.covered(far, NEAR)[told].mean() > 0.9
     assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from) is None
     assert len(far) < len(looked_from) / 4
 
 
-def test_what_is_told_to_lie_on_the_floor_is_looked_for_all_over_it_before_anything_else() -> None:
+def test_what_is_told_to_lie_on_the_floor_is_looked_for_all_over_it() -> None:
     study = next(room for room in SCENE.rooms if room.name == "study")
-    floor = floor_views(VIEWPOINTS, (study,))
+    floor, none = floor_views(VIEWPOINTS, (study,)), np.zeros(len(VIEWPOINTS.points), bool)
     assert all(study.outline.contains(x, y) and SCENE.surface_at(x, y) is None for x, y, _ in floor.points.tolist())
     looked_from: list[Pose2] = []
-    while floor.covered(looked_from).mean() < 0.95:
-        view = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, floor=floor)
-        assert view is not None and floor.visible(view).any()
+    while (view := viewpoint_search.there(SCENE, VIEWPOINTS, HOME, looked_from, (), none, floor)) is not None:
+        assert floor.visible(view).any()
         looked_from.append(view)
-    assert len(looked_from) < 8
-    assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, floor=floor) is not None
+    assert floor.covered(looked_from).mean() > 0.95 and len(looked_from) < 8
 
 
 def test_every_view_shows_something_new() -> None:

@@ -15,7 +15,7 @@ from services.brain.recoveries.regrasp import grab_failed
 from services.brain.steps.begin import Listen, Ready, Wait
 from services.brain.steps.find import reference_to
 from services.brain.steps.home import tell_home
-from services.brain.steps.identify import ask_identity, survey
+from services.brain.steps.identify import ask_identity, candidates, survey
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Navigate, Release
 from services.brain.steps.verify import is_misplaced, verify_placement, with_care
@@ -85,7 +85,7 @@ def acquire(ctx: Context) -> Behaviour:
         state="NAVIGATING",
     )
     grab = Grab("grab", ctx, lambda: ctx.mission.task.label, lambda: object_ref(ctx))
-    question = ask_identity(ctx, lambda: ctx.mission.task.item, LEAST)
+    question = ask_identity(ctx, lambda: ctx.mission.task.item, lambda: candidates(ctx, LEAST))
     asked = Condition("identify", question, lambda: survey(ctx, ctx.mission.task.item))
     once = Sequence("approach_and_grab", find, Settle("settle", ctx), asked, grab, Settle("settle", ctx))
     return Retry("acquire", ctx, once, ctx.config.grab_retries, again=lambda: grab_failed(ctx))

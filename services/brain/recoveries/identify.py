@@ -4,6 +4,7 @@ from functools import partial
 
 from py_trees.behaviour import Behaviour
 
+from common import messages as m
 from common.naming.likeness import LEAST, LIKELY
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
@@ -12,14 +13,17 @@ from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, can
 from services.brain.tree.composites import Retry, Sequence
 
 
-def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = False) -> Behaviour:
-    """Ask about the likeliest objects, then about the next, until the person says that one is the one that is meant.
+def ask_whether(
+    ctx: Context, task: Task, least: float = LIKELY, near: bool = False, there: bool = False, most: int = MOST_ASKED
+) -> Behaviour:
+    """Ask about the likeliest objects, then about the next, until the person says that one is the one that is meant, at
+    `most` so often; `least` and `near` as of `candidates`, `there`: of what is where it was said to be."""
 
-    `least` and `near` as of `candidates`.
-    """
-    look = LocateObject("look_for_the_one_meant", ctx, task.item)
-    ask = ask_identity(ctx, lambda: task.item, least, near, look)
-    return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least, near))
+    def left() -> list[m.PossibleObject]:
+        return candidates(ctx, least, near, ctx.told_place(task.item) if there else "")
+
+    ask = ask_identity(ctx, lambda: task.item, left, LocateObject("look_for_the_one_meant", ctx, task.item))
+    return Retry("identify", ctx, ask, most - 1, again=lambda: was_another(ctx) and bool(left()))
 
 
 def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
@@ -28,9 +32,9 @@ def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
     return Sequence("ask_and_grab", asked, task.approach(), task.grab())
 
 
-def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:
+def may_be(ctx: Context, least: float = LIKELY, near: bool = False, place: str = "") -> bool:
     """An object is seen that may be the one asked for, and nobody was asked about it."""
-    return not ctx.mission.failed_for_good and bool(candidates(ctx, least, near))
+    return not ctx.mission.failed_for_good and bool(candidates(ctx, least, near, place))
 
 
 def was_another(ctx: Context) -> bool:

@@ -3,7 +3,7 @@
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from common.naming.likeness import ROUGHLY
+from common.naming.likeness import LEAST, ROUGHLY
 from common.naming.names import normalise
 from services.brain.mission.context import Context
 from services.brain.mission.remarks import PERSON
@@ -17,9 +17,9 @@ from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 from services.brain.world.placement import may_lie_flat
 
-VIEWPOINTS, FROM_NEAR = (2, 5, 9), 9
-"""Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first), and how many more
-the last has where something may lie flat."""
+VIEWPOINTS, FROM_NEAR, THERE = (2, 5, 9), 9, 12
+"""Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first), how many are from
+near after that where something may lie flat, and how many where it was said to be (chosen: the floor of a room)."""
 UNFAMILIAR = 0.065
 """Likeness to a name that says nothing of looks from which a thing is asked about before the last attempt. Chosen: what
 is no plain mug or can, whose own word would have been said."""
@@ -31,39 +31,53 @@ AFTER_A_GLANCE = (
 
 
 def search(ctx: Context, task: Task) -> Behaviour:
-    """`max_retry_attempts` attempts: the first turns on the spot, the others go to where more can be seen.
+    """Where it was said to be, then `max_retry_attempts` attempts, of which the first turns on the spot and the others
+    go to where more can be seen, then from near what may lie flat.
 
     What may be meant is asked about before them where it was said where it is, and before the last one: at once what
     fits ROUGHLY, and whatever is UNFAMILIAR for words of which one says nothing of looks, a yellow trophy, a magnifying
-    glass: to look on for it would not tell which it is.
+    glass: to look on for it would not tell which it is. So is whatever fits at all once that place, or everything, has
+    been looked at: to look on takes minutes, a question seconds.
     """
-    *first, last = [_attempt(ctx, task, number) for number in range(1, ctx.config.max_retry_attempts + 1)]
-    return Selector("search", _ask(ctx, task, "there"), *first, _ask(ctx, task, ""), last)
+    numbers = range(1, ctx.config.max_retry_attempts + 1)
+    *first, last = [
+        _attempt(ctx, task, f"attempt {n}", VIEWPOINTS[min(n, len(VIEWPOINTS)) - 1], n > 1) for n in numbers
+    ]
+    flat = may_lie_flat(task.item, ctx.io.household)
+    looked_there = _attempt(ctx, task, "there", THERE, there=True, near=flat)
+    there = Selector("there", _ask(ctx, task), looked_there, _ask_all(ctx, task, True))
+    told = Condition("told", there, lambda: bool(ctx.told_place(task.item)), Status.FAILURE)
+    near = [_ask_all(ctx, task), _attempt(ctx, task, "from near", FROM_NEAR, near=True)]
+    return Selector("search", told, *first, _ask(ctx, task, "anywhere"), last, *(near if flat else []))
 
 
-def _ask(ctx: Context, task: Task, where: str) -> Condition:
+def _ask(ctx: Context, task: Task, where: str = "there") -> Condition:
     words = normalise(task.item).split()
     least = ROUGHLY if all(known_by_name(ctx, task.item, word) for word in words) else UNFAMILIAR
+    return Condition(f"unknown_{where}", ask_whether(ctx, task, least), lambda: may_be(ctx, least), Status.FAILURE)
 
+
+def _ask_all(ctx: Context, task: Task, there: bool = False) -> Condition:
     def worth_it() -> bool:
-        return (not where or bool(ctx.told_points(task.item).any())) and may_be(ctx, least)
+        return may_be(ctx, LEAST, place=ctx.told_place(task.item) if there else "")
 
-    return Condition(f"unknown_{where or 'anywhere'}", ask_whether(ctx, task, least), worth_it, Status.FAILURE)
+    asked = ask_whether(ctx, task, LEAST, there=there, most=1)
+    return Condition("all_there" if there else "all", asked, worth_it, Status.FAILURE)
 
 
-def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
-    label = f"attempt {number}"
+def _attempt(
+    ctx: Context, task: Task, label: str, most: int, elsewhere: bool = True, there: bool = False, near: bool = False
+) -> Behaviour:
     looked = LocateObject("look", ctx, task.item)
     look = Sequence(
         "view",
-        MoveToViewpoint("viewpoint", ctx, number > 1, name=label, item=task.item),
+        MoveToViewpoint("viewpoint", ctx, label, task.item, elsewhere, there, near),
         Settle("settle", ctx),
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_GLANCE, task),
         name=f"view of {label}",
     )
-    last = number == ctx.config.max_retry_attempts and may_lie_flat(task.item, ctx.io.household)
-    retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1 + FROM_NEAR * last
-    return Retry("attempt", ctx, look, retries, lambda: more_to_see(ctx), label, lambda: kept_away(ctx), at_once=True)
+    more, free = (lambda: more_to_see(ctx)), (lambda: kept_away(ctx))
+    return Retry("attempt", ctx, look, most - 1, more, label, free, at_once=True)
 
 
 def can_go_on(ctx: Context) -> bool:

@@ -11,8 +11,9 @@ from common import messages as m
 from common.household import Household
 from common.language.normalise import enumeration, indefinite, without_determiners
 from common.language.noun_phrase import WHICH, related
-from common.naming.likeness import LEAST, PLAIN, ROUGHLY, describes, likeness
+from common.naming.likeness import LEAST, LIKELY, PLAIN, ROUGHLY, describes, likeness
 from common.naming.names import ANYTHING, unnumbered
+from common.naming.place_named import is_at
 from services.brain.language.choosing import chosen
 from services.brain.language.dialogue import Reply
 from services.brain.mission.context import Context
@@ -28,9 +29,10 @@ ANOTHER = "ANOTHER_ONE"
 NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
-MOST_ASKED, AT_FIRST = 4, 2
-"""Questions that a person is asked in one mission, and before MANY looks unless the words fit an object HALF (chosen:
-more is a nuisance, and a better one may come); one is left for when everything was looked at."""
+MOST_ASKED, IN_ALL, AT_FIRST = 5, 3, 2
+"""Questions that a person is asked in one mission, of them while there is more to see, and before MANY looks, unless
+the words fit an object HALF; beyond AT_FIRST it has to be LIKELY. Chosen: more is a nuisance, and a better one may
+come; one is left for when all was looked at, one for when that was from near."""
 MANY = 12
 """Poses looked from, each view as it is reached and left [count], from which on what fits ROUGHLY is asked about, and
 not only what is LIKELY. Chosen: six views; the others of a home take minutes, a question seconds."""
@@ -42,15 +44,15 @@ HALF = 0.5
 
 
 class ChooseCandidate(Leaf):
-    """Takes up the likeliest objects that the person was not asked about; `least` and `near` as of `candidates`."""
+    """Takes up those of the `candidates` that the person is asked about next."""
 
-    def __init__(self, node_id: str, ctx: Context, least: float, near: bool = False) -> None:
+    def __init__(self, node_id: str, ctx: Context, of: Callable[[], list[m.PossibleObject]]) -> None:
         super().__init__(node_id, ctx)
-        self._least, self._near = least, near
+        self._of = of
 
     def update(self) -> Status:
         search = self.ctx.mission.search
-        search.about = candidates(self.ctx, self._least, self._near)
+        search.about = self._of()
         search.questions += bool(search.about)
         return Status.SUCCESS if search.about else Status.FAILURE
 
@@ -110,21 +112,24 @@ class HearIdentity(HearAnswer):
         return super().fail_with(failure)
 
 
-def candidates(ctx: Context, least: float, near: bool = False) -> list[m.PossibleObject]:
+def candidates(ctx: Context, least: float, near: bool = False, place: str = "") -> list[m.PossibleObject]:
     """The likeliest object that may be meant and that the person can still be asked about, with others about as likely,
     surface by surface; [] if there is none.
 
-    `least`: their likeness, at least; `near`: of those only that were looked at from nearer.
+    `least`: their likeness, at least; `near`: of those only that were looked at from nearer, `place`: that are there.
     """
     search = ctx.mission.search
     if search.unanswered or search.questions >= MOST_ASKED:
         return []
     if least > LEAST:
         much = len(search.visited) >= MANY
-        least = min(least, ROUGHLY) if much else least
-        least = max(least, HALF) if search.questions >= (MOST_ASKED - 1 if much else AT_FIRST) else least
+        if search.questions >= (IN_ALL if much else AT_FIRST):
+            least = max(least, HALF)
+        elif much:
+            least = max(least, LIKELY) if search.questions >= AT_FIRST else min(least, ROUGHLY)
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
     left = [p for p in left if not near or search.directions(p.position)]
+    left = [p for p in left if not place or is_at(p, place, ctx.io.household)]
     rivals = [p for p in left if p.likeness >= RIVAL * left[0].likeness][:MOST_NAMED]
     places = [p.on for p in rivals]
     return sorted(rivals, key=lambda p: places.index(p.on))
@@ -206,14 +211,13 @@ def whether(ctx: Context, item: str) -> str:
     return f"I see {', and '.join(seen)}. {question}" if about else ""
 
 
-def ask_identity(ctx: Context, item: Callable[[], str], least: float, near: bool = False, *then: Behaviour) -> Sequence:
-    """Ask whether what was found is the `item` that is meant; FAILURE unless the person says so, else `then`.
-
-    `least` and `near` as of `candidates`.
-    """
+def ask_identity(
+    ctx: Context, item: Callable[[], str], of: Callable[[], list[m.PossibleObject]], *then: Behaviour
+) -> Sequence:
+    """Ask whether one `of` what was found is the `item` that is meant; FAILURE unless the person says so; `then`."""
     return Sequence(
         "ask_whether",
-        ChooseCandidate("choose_candidate", ctx, least, near),
+        ChooseCandidate("choose_candidate", ctx, of),
         AskQuestion("whether", ctx, lambda: whether(ctx, item())),
         HearIdentity("hear_identity", ctx, item),
         *then,

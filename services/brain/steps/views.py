@@ -15,7 +15,6 @@ from services.brain.mission.remarks import PERSON
 from services.brain.steps.leaf import SendGoal
 from services.brain.steps.motion import drive_to
 from services.brain.world import viewpoint_search
-from services.brain.world.placement import may_lie_flat
 
 HELD_UP = (PERSON, "WAITING", "GIVING_WAY", "BACKING_OFF")
 """Navigation's codes while somebody or something keeps it from getting on."""
@@ -61,26 +60,37 @@ class GoAndLook(SendGoal):
 
 
 class MoveToViewpoint(GoAndLook):
-    """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
+    """Brings the camera to the view that shows most that is new: by turning on the spot, `elsewhere`, or where the
+    `item` was said to be (`there`); if `near`, also of what was not seen from so near."""
 
     NOTHING_LEFT = ("NOTHING_NEW", "everything has been looked at")
 
-    def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "", item: str = "") -> None:
+    def __init__(
+        self,
+        node_id: str,
+        ctx: Context,
+        name: str,
+        item: str,
+        elsewhere: bool,
+        there: bool = False,
+        near: bool = False,
+    ) -> None:
         super().__init__(node_id, ctx, name)
-        self._elsewhere, self._item = elsewhere, item
+        self._item, self._elsewhere, self._there, self._near = item, elsewhere, there, near
 
     def initialise(self) -> None:
         super().initialise()
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
-        looked_from, told = [*mission.search.visited, pose], ctx.told_points(self._item)
-        if self._elsewhere:
-            likely, flat = ctx.likelihood(self._item), may_lie_flat(self._item, ctx.io.household)
-            floor, missed = ctx.told_floor(self._item), mission.search.unreached
-            self.view = viewpoint_search.elsewhere(
-                ctx.io.household, ctx.viewpoints, pose, looked_from, missed, likely, told, flat, floor
-            )
+        looked_from, missed = [*mission.search.visited, pose], mission.search.unreached
+        home, views = ctx.io.household, ctx.viewpoints
+        if self._there:
+            told, floor = ctx.told_points(self._item), ctx.told_floor(self._item)
+            self.view = viewpoint_search.there(home, views, pose, looked_from, missed, told, floor, self._near)
+        elif self._elsewhere:
+            likely = ctx.likelihood(self._item)
+            self.view = viewpoint_search.elsewhere(home, views, pose, looked_from, missed, likely, self._near)
         else:
-            self.view = viewpoint_search.turn(ctx.viewpoints, pose, looked_from, told)
+            self.view = viewpoint_search.turn(views, pose, looked_from)
         mission.search.visited = looked_from
         mission.at = ""
 

@@ -26,17 +26,36 @@ AMPLE = 0.48
 takes of it. Where a surface shows from narrower places only, these are taken in the end."""
 CANDIDATES = 6
 """Viewpoints of which it is worked out how the search would go on from them [count]; chosen: twelve are no better."""
-FLOOR_WORTH = 0.25
-"""What a point of the floor counts, by one of a table [-]. Chosen: fewer than four are a corner that nearly shows."""
+FLOOR_WORTH = 0.7
+"""What a point of the floor counts, by one of a table [-]. Chosen: fewer than five are a corner that nearly shows."""
 TRIES = 2
 """Times that a viewpoint is driven to in vain before it is given up [count]."""
 
 
-def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2], told: Mask | None = None) -> Pose2 | None:
-    """The heading at this spot that shows most that is new of tables, shelves and where it is `told` to be; None when
-    turning shows nothing."""
-    wanted = viewpoints.listed if told is None else viewpoints.listed | told
-    return viewpoints.turn(here, _unseen(viewpoints, looked_from) * wanted)
+def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) -> Pose2 | None:
+    """The heading at this spot that shows most that is new of tables and shelves; None when turning shows nothing."""
+    return viewpoints.turn(here, _unseen(viewpoints, looked_from) * viewpoints.listed)
+
+
+def there(
+    floor_plan: FloorPlan,
+    viewpoints: Viewpoints,
+    here: Pose2,
+    looked_from: Collection[Pose2],
+    unreached: Collection[Pose2],
+    told: Mask,
+    floor: Viewpoints | None = None,
+    near: bool = False,
+) -> Pose2 | None:
+    """The viewpoint to go to for what is at the points (p,) where it was `told` to be, then seen from `near`, then on
+    the `floor` there; None when that has been looked at. `unreached` as of `elsewhere`."""
+    views = _Views(floor_plan, viewpoints, None)
+    orders: list[_Order] = [(views, viewpoints.shows, _unseen(viewpoints, looked_from) * told)]
+    if near:
+        orders.append((views, viewpoints.near, _unseen(viewpoints, looked_from, NEAR) * told))
+    if floor is not None:
+        orders.append((_Views(floor_plan, floor, None), floor.shows, FLOOR_WORTH * _unseen(floor, looked_from)))
+    return _next(orders, here, looked_from, unreached)
 
 
 def elsewhere(
@@ -46,30 +65,30 @@ def elsewhere(
     looked_from: Collection[Pose2],
     unreached: Collection[Pose2] = (),
     likelihood: Array | None = None,
-    told: Mask | None = None,
-    flat: bool = False,
-    floor: Viewpoints | None = None,
+    near: bool = False,
 ) -> Pose2 | None:
     """The viewpoint to go to for what is found soonest on the whole way; None when everything has been looked at.
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
-    takes it. The points (p,) where it is `told` to be come first, then the `floor` there, sofas and beds last; where it
-    may lie `flat` these points, and in the end the other tables and shelves, are looked at from near as well.
+    takes it. Sofas and beds come last; then, if also from `near`, the tables and shelves that were not seen so.
     """
     views = _Views(floor_plan, viewpoints, likelihood)
-    unseen, far, failed = _unseen(viewpoints, looked_from), _unseen(viewpoints, looked_from, NEAR), Counter(unreached)
-    at = told if told is not None else np.zeros(len(unseen), bool)
-    shows, near = viewpoints.shows, viewpoints.near if flat else np.zeros_like(viewpoints.shows)
-    orders: list[tuple[_Views, Mask, Array]] = [(views, shows, unseen * at), (views, near, far * at)]
-    if floor is not None:
-        orders.append((_Views(floor_plan, floor, None), floor.shows, FLOOR_WORTH * _unseen(floor, looked_from)))
-    listed = viewpoints.listed
-    orders += [(views, shows, unseen * listed), (views, shows, unseen), (views, near, far * listed)]
+    unseen, listed = _unseen(viewpoints, looked_from), viewpoints.listed
+    orders: list[_Order] = [(views, viewpoints.shows, unseen * listed), (views, viewpoints.shows, unseen)]
+    if near:
+        orders.append((views, viewpoints.near, _unseen(viewpoints, looked_from, NEAR) * listed))
+    return _next(orders, here, looked_from, unreached)
+
+
+def _next(
+    orders: "list[_Order]", here: Pose2, looked_from: Collection[Pose2], unreached: Collection[Pose2]
+) -> Pose2 | None:
+    failed = Counter(unreached)
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        for (some, shown, worth), room in product(orders, (AMPLE, 0.0)):
-            if (found := some.next(here, shown, worth, tried, room)) is not None:
+        for (views, shows, worth), room in product(orders, (AMPLE, 0.0)):
+            if (found := views.next(here, shows, worth, tried, room)) is not None:
                 return found
     return None
 
@@ -129,6 +148,10 @@ class _Views:
         if at not in self._lengths:
             self._lengths[at] = self._ground.lengths(at)[self._cells]
         return self._lengths[at]
+
+
+_Order = tuple[_Views, Mask, Array]
+"""Viewpoints (v), what of their points (v, p) each shows, and what each point (p,) counts."""
 
 
 class _Ground:
