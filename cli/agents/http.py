@@ -1,13 +1,12 @@
 """`tidybot mcp --http`: the server over Streamable HTTP, with the access rules of the operator's page."""
 
-import os
 import socket
 import sys
 import tomllib
 from typing import TYPE_CHECKING, Any
 
 from cli.errors import CliError
-from cli.processes.supervision import Supervision, run_dir
+from cli.processes.supervision import settings_of_run
 from common import config
 from common.security import web_access
 
@@ -27,18 +26,11 @@ def page_token(host: str) -> str:
     try:
         path = config.config_dir() / "dashboard.toml"
         filed = tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        changed = config.overrides({**os.environ, **_settings_of_run()}, []).get("dashboard", {})
+        changed = config.overrides(settings_of_run(), []).get("dashboard", {})
         given = changed["token"][0] if "token" in changed else filed.get("token", "")
         return web_access.token_for(host, str(given))
     except (OSError, ValueError) as error:
         raise CliError(str(error)) from None
-
-
-def _settings_of_run() -> dict[str, str]:
-    try:
-        return Supervision(run_dir()).info().settings
-    except CliError:
-        return {}
 
 
 class AccessMiddleware:

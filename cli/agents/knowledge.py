@@ -1,6 +1,5 @@
 """Queries of an agent about the robot: pictures, objects, the map, its state. Each function asks the bus once."""
 
-import os
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from cli.link import Link, Subscription
 from cli.missions.explain import mission_record, told
 from cli.missions.say import status_record
 from cli.payload import fields
-from cli.recordings.record import settings_of
+from cli.processes.supervision import settings_of_run
 from common import config, topics
 from common import messages as m
 from common.cells import unpacked
@@ -134,7 +133,7 @@ def _told(link: Link) -> Household | None:
     """What the robot was told of its home, None when that is not known on this machine."""
     running = link.latest(topics.SIM_STATUS)
     try:
-        settings = settings_of(os.environ)
+        settings = settings_of_run()
         changes = config.overrides(settings, ())
         shared = config.load("runtime", config.RuntimeConfig, config.config_dir(), changes)
         chosen = any(f"{config.PREFIX}RUNTIME__{name}" in settings for name in ("SCENE", "HOUSEHOLD"))

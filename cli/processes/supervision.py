@@ -15,6 +15,7 @@ import msgspec
 from cli.errors import CliError
 from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, environment_of, render_config, socket_path
 from cli.processes.services import Service
+from common.config import PREFIX
 from common.installation import ROOT, workspace
 from common.process import supervisor
 from common.process.host import stat_of
@@ -62,6 +63,15 @@ def run_dir(environ: Mapping[str, str] = os.environ) -> Path:
     if (ours := workspace()) is not None:
         return ours / "run"
     return Path(environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()) / f"tidybot-{os.getuid()}"
+
+
+def settings_of_run() -> dict[str, str]:
+    """The overrides that services run with: those of the run that is up, before those of this process."""
+    try:
+        given = Supervision(run_dir()).info().settings
+    except CliError:
+        given = {}
+    return {k: v for k, v in {**os.environ, **given}.items() if k.startswith(PREFIX)}
 
 
 class Supervision:

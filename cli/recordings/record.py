@@ -12,7 +12,7 @@ from pathlib import Path
 from cli.errors import CliError, number
 from cli.link import Link, address, robot_command
 from cli.output import ProgressLine
-from cli.processes.supervision import Supervision, run_dir
+from cli.processes.supervision import settings_of_run
 from cli.recordings.tape import BATCH, FLUSH, Listener, Tape, progress
 from common import config, topics
 from common.bus.session import NoRouter, open_session
@@ -75,15 +75,6 @@ def facts_of(link: Link, tape: Tape) -> dict[str, str]:
         s = tape.status
         facts |= {"scene": s.scene, "seed": str(s.seed), "speed": s.speed, "epoch": s.epoch}
     return facts
-
-
-def settings_of(environ: "os._Environ[str]") -> dict[str, str]:
-    """The overrides the services run with: those of the run that is up, or of this process."""
-    try:
-        given = Supervision(run_dir()).info().settings
-    except CliError:
-        given = {}
-    return {k: v for k, v in {**environ, **given}.items() if k.startswith("TIDYBOT__")}
 
 
 def record(args: argparse.Namespace) -> int:
@@ -167,7 +158,7 @@ def _run(args: argparse.Namespace, files: RecordingFiles, link: Link, stop: Stop
 def _facts(recorder: Recorder, link: Link, tape: Tape) -> None:
     """What a replay of the file needs beside its messages."""
     recorder.note("run", facts_of(link, tape))
-    recorder.note("settings", settings_of(os.environ))
+    recorder.note("settings", settings_of_run())
     _attach(recorder, tape)
 
 
@@ -179,7 +170,7 @@ def _attach(recorder: Recorder, tape: Tape) -> None:
     if tape.status is None:
         return
     try:
-        changes = config.overrides(settings_of(os.environ), ())
+        changes = config.overrides(settings_of_run(), ())
         shared = config.load("runtime", config.RuntimeConfig, config_dir(), changes)
         world, household = load_scene(shared.world_file), load_household(shared.household_file)
     except (config.ConfigError, SceneError):
