@@ -12,6 +12,7 @@ from services.manipulation.grasps.antipodal import LEAST_SHARE, SLOPING
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import CERTAIN, Grasp
 from services.manipulation.grasps.pads import contact_at
+from services.manipulation.grasps.revolved import revolved
 from services.manipulation.grasps.surface import own_points, surface
 from services.manipulation.grasps.target import Target
 from services.manipulation.grasps.vessel import all_around
@@ -93,8 +94,11 @@ def _covered(target: Target) -> float:
 
 
 def believed(target: Target) -> Target:
-    """The object with its measured shape, or as it was seen where that does not explain it: what is open from above has
-    its walls and hoops only."""
+    """The object with its measured shape, turned about the axis that its outline tells, or as it was seen where that
+    does not explain it: what is open from above has its walls and hoops only."""
+    turned = revolved(target)
+    if turned is not None and explained(turned):
+        return turned
     if explained(target):
         return target
     found = as_seen(target)
