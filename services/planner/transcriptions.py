@@ -6,9 +6,10 @@ from collections.abc import Callable, Collection, Sequence
 from common.messages import ActionPlan, PlanStep, Transcription
 from services.planner.plan_builder import NOT_UNDERSTOOD
 
-PLANNED, UNLISTED, GUESSED, REFUSED, NOTHING = 0.0, 1.5, 2.0, 3.0, 4.0
+PLANNED, UNLISTED, ANSWERED, GUESSED, REFUSED, NOTHING = 0.0, 1.5, 1.5, 2.0, 3.0, 4.0
 """How much rarer than a command that is understood, of things that are known, is said to the robot what names others,
-what is only guessed, what it cannot do, and what it does not understand: a natural logarithm."""
+what is only answered (people ask for five things to one question), what is only guessed, what it cannot do, and what it
+does not understand: a natural logarithm."""
 MARGIN = 1.0
 """Natural logarithm of how much likelier what was heard first has to be than anything else that could be done for it
 not to be asked about."""
@@ -51,6 +52,8 @@ DOUBTFUL = "I am not sure what I heard"
 
 def cost(found: ActionPlan, known: Collection[str]) -> float:
     """How much less likely a transcription is for what its plan is, a negative log-probability."""
+    if all(step.action == "say" for step in found.steps) and found.steps:
+        return ANSWERED
     if found.steps:
         unlisted = any(step.object and step.object not in known for step in found.steps)
         return UNLISTED if unlisted else PLANNED

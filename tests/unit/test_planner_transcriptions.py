@@ -21,6 +21,7 @@ PLANS = {
     "fetch the cup": fetch("cup"), "fetch the jug": refused("I see no jug"),
     "fletch the mug": refused(f"{NOT_UNDERSTOOD} fletch", "fetch the mug"), "fish the mug": refused(NOT_UNDERSTOOD),
 }  # fmt: skip
+PLANS["what fetch the mug"] = ActionPlan(request_id="", steps=[PlanStep(action="say", text="I know of no mug.")])
 KNOWN = frozenset({"mug", "cup"})
 
 
@@ -38,6 +39,7 @@ def test_what_makes_a_plan_of_known_things_is_meant_rather_than_what_does_not() 
     assert meant("fetch the mud", fetch_the_mug=0.4) == "fetch the mug"
     assert meant("fetch the jug", fetch_the_mug=0.3) == "fetch the mug"
     assert meant("fletch the mug", fetch_the_cup=0.3) == "fetch the cup", "a guess is less than a plan"
+    assert meant("fletch the mug", what_fetch_the_mug=0.3) == "fletch the mug", "an answer is little more than a guess"
 
 
 def test_what_was_heard_first_is_asked_about_where_another_is_nearly_as_likely() -> None:
