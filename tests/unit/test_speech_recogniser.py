@@ -39,7 +39,11 @@ class Model:
 def heard(model: Model) -> Recognition:
     config = SpeechConfig(commands=("stop",))
     recogniser = Recogniser(
-        config, cast(Moonshine, model), grammars(config, load_household("apartment")), lambda text: 0.0
+        config,
+        cast(Moonshine, model),
+        grammars(config, load_household("apartment")),
+        lambda text: 0.0,
+        lambda text, whole: 0.0,
     )
     return recogniser.recognise(PreparedUtterance(np.zeros((1, 16000), np.float32), 1.0), "command")
 

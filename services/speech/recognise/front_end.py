@@ -12,6 +12,7 @@ from common.sound import RATE
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
+from services.speech.recognise.expected import Expectation, classes
 from services.speech.recognise.free_text import cost, freely, without_itself
 from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
@@ -61,9 +62,19 @@ class FrontEnd:
         from services.speech.recognise import moonshine
 
         self._detector, self._config = VoiceDetector(), config
-        self._names = known_names(config, household, ())
+        self._know(household, ())
         model = moonshine.load(config.beam)
-        self._recogniser = Recogniser(config, model, found, lambda text: cost(text, self._names, config))
+        self._recogniser = Recogniser(
+            config,
+            model,
+            found,
+            lambda text: cost(text, self._names, config),
+            lambda text, whole: self._expected(text, whole),
+        )
+
+    def _know(self, household: Household, names: Sequence[str]) -> None:
+        self._names = known_names(self._config, household, names)
+        self._expected = Expectation(classes(self._config, household, names), self._config.wake)
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
         """Recognise 16 kHz int16 samples (n,); `detected` is the wake word detector's score for them."""
@@ -79,4 +90,4 @@ class FrontEnd:
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Add the names of this household, and these names of things, to the grammars."""
         self._recogniser.learn(household, names)
-        self._names = known_names(self._config, household, names)
+        self._know(household, names)

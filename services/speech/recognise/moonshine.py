@@ -47,12 +47,19 @@ class Decoded:
 
 @dataclass(frozen=True)
 class BeamHypothesis:
-    """A beginning of a sentence: its log-probability, its tokens, the grammar's state after it, what it reads."""
+    """A beginning of a sentence: its log-probability, what its whole words cost, its tokens, the grammar's state after
+    it, what it reads."""
 
     total: float
+    cost: float
     numbers: tuple[int, ...]
     state: State
     text: str
+
+    @property
+    def worth(self) -> float:
+        """Log-probability with the cost of its words."""
+        return self.total - self.cost
 
 
 @dataclass(frozen=True)
@@ -112,9 +119,15 @@ class Moonshine:
             scores, cache = self._decoder.step(utterance.attended, cache, [0], [best])
         return Decoded(self._spelled(numbers), total, (*numbers, EOS))
 
-    def freely(self, utterance: EncodedUtterance, prior: Callable[[str], float]) -> list[Decoded]:
-        """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first."""
-        found = self._search(utterance, self._any, prior, FREE_BEAM)
+    def freely(
+        self, utterance: EncodedUtterance, prior: Callable[[str], float], expected: Callable[[str], float]
+    ) -> list[Decoded]:
+        """Different transcriptions without any grammar by beam search, as they are spelled, the likeliest first.
+
+        `expected` is the cost of the words with which a text begins, in the search too: no other word of like sound
+        crowds out one that is said to a robot.
+        """
+        found = self._search(utterance, self._any, prior, FREE_BEAM, expected)
         return [Decoded(self._spelled(f.numbers[:-1]), f.log_probability, f.numbers) for f in found]
 
     def _spelled(self, numbers: Iterable[int]) -> str:
@@ -129,18 +142,23 @@ class Moonshine:
         return self._search(utterance, trie, prior, self._beam)
 
     def _search(
-        self, utterance: EncodedUtterance, trie: TokenTrie | AnyTokens, prior: Callable[[str], float], width: int
+        self,
+        utterance: EncodedUtterance,
+        trie: TokenTrie | AnyTokens,
+        prior: Callable[[str], float],
+        width: int,
+        expected: Callable[[str], float] = lambda text: 0.0,
     ) -> list[Decoded]:
         """The sentences of a beam of that `width`."""
         scores, cache = self._first(utterance)
-        beam = [BeamHypothesis(0.0, (), trie.start, "")]
+        beam = [BeamHypothesis(0.0, 0.0, (), trie.start, "")]
         finished: dict[str, tuple[float, Decoded]] = {}
         for _ in range(utterance.limit):
             for row, hypothesis in enumerate(beam):
                 if hypothesis.text.strip() and trie.is_final(hypothesis.state):
                     _finish(hypothesis, float(scores[row, EOS]), prior, finished)
             leader = max((worth for worth, _ in finished.values()), default=-np.inf)
-            kept = self._continued(beam, scores, trie, leader, width)
+            kept = self._continued(beam, scores, trie, leader, width, expected)
             if not kept:
                 break
             beam = [hypothesis for hypothesis, _ in kept]
@@ -153,7 +171,13 @@ class Moonshine:
         return self._decoder.step(utterance.attended, self._decoder.empty_cache(utterance.variants), [0], [BOS])
 
     def _continued(
-        self, beam: list[BeamHypothesis], scores: Array, trie: TokenTrie | AnyTokens, leader: float, width: int
+        self,
+        beam: list[BeamHypothesis],
+        scores: Array,
+        trie: TokenTrie | AnyTokens,
+        leader: float,
+        width: int,
+        expected: Callable[[str], float],
     ) -> list[tuple[BeamHypothesis, int]]:
         """The best hypotheses one token longer, each with the row of the one it goes on from.
 
@@ -165,12 +189,14 @@ class Moonshine:
             values = scores[row, allowed]
             for k in _highest(values, 2 * width):
                 number, total = int(allowed[k]), hypothesis.total + float(values[k])
-                text = hypothesis.text + letters(self.tokens[number])
+                added = letters(self.tokens[number])
+                text = hypothesis.text + added
                 if text not in options or total > options[text][0].total:
-                    longer = BeamHypothesis(total, (*hypothesis.numbers, number), after[k], text)
+                    cost = expected(hypothesis.text) if added.startswith(" ") else hypothesis.cost
+                    longer = BeamHypothesis(total, cost, (*hypothesis.numbers, number), after[k], text)
                     options[text] = longer, row
-        kept = sorted(options.values(), key=lambda o: -o[0].total)[:width]
-        return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
+        kept = sorted(options.values(), key=lambda o: -o[0].worth)[:width]
+        return [o for o in kept if o[0].worth > max(leader, kept[0][0].worth) - BEAM_THRESHOLD]
 
     def begun_with(self, numbers: tuple[int, ...], sentence: Decoded) -> list[Decoded]:
         """The sentence with these tokens in place of none of its words, of its first one, and so on.

@@ -79,13 +79,18 @@ class Recogniser:
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
     verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
     Of transcriptions without the grammar that sound alike, `cost` tells which is unlikely to be said to the robot: a
-    negative log-probability.
+    negative log-probability. `expected` is the same for the words with which a sentence begins, or a whole one.
     """
 
     def __init__(
-        self, config: SpeechConfig, model: "Moonshine", grammars: dict[Scope, Grammar], cost: Callable[[str], float]
+        self,
+        config: SpeechConfig,
+        model: "Moonshine",
+        grammars: dict[Scope, Grammar],
+        cost: Callable[[str], float],
+        expected: Callable[[str, bool], float],
     ) -> None:
-        self._config, self._model, self._cost = config, model, cost
+        self._config, self._model, self._cost, self._expected = config, model, cost, expected
         self._tries = self._compiled(grammars)
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
@@ -126,9 +131,14 @@ class Recogniser:
         known = not rest or (verdict == "accept" and normalise(rest) == command.text)
         if scope == "interrupt" or mistaken or known or certainty >= CLEAR:
             return heard
-        others = self._model.freely(encoded, prior)[:OTHERS]
+
+        def worded(text: str) -> float:
+            return prior(text) + self._expected(text, True)
+
+        others = self._model.freely(encoded, worded, lambda text: self._expected(text, False))[:OTHERS]
+        texts = [(text, value - self._expected(text, True)) for text, value in texts]
         return self._among_others(
-            heard, others, score_again, lambda text: prior(text) + self._cost(text), scope == "woken", texts
+            heard, others, score_again, lambda text: worded(text) + self._cost(text), scope == "woken", texts
         )
 
     def _among_others(
