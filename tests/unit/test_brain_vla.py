@@ -380,6 +380,22 @@ def test_a_search_looks_first_where_the_thing_was_said_to_be(steps: list[m.PlanS
     assert views.visible((goal.x, goal.y, goal.theta))[there].any()
 
 
+@pytest.mark.parametrize(
+    ("command", "place"),
+    [
+        ("There is my mug on the study floor. Please put it on the desk.", "study floor"),
+        ("Put my mug on the desk. I saw the mug in the kitchen.", "kitchen"), ("Put the mug on the desk.", ""),
+        ("Put the bowl on the desk and bring me the mug.", ""),
+    ],
+)  # fmt: skip
+def test_where_a_thing_is_may_be_said_in_a_sentence_of_its_own(command: str, place: str) -> None:
+    bench = asked(command, enable_confirmation=False)
+    one = {"object": "mug"}
+    there = m.PlanStep(action="place", target="desk", **one)
+    answer_plan(bench, 1, [m.PlanStep(action="find", **one), m.PlanStep(action="grasp", **one), there])
+    assert bench.brain.context.told_place("mug") == place
+
+
 def test_a_search_that_is_held_up_on_its_way_looks_elsewhere_first() -> None:
     bench = planned()
     see(bench, 1, found=False)

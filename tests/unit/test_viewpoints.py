@@ -27,6 +27,7 @@ def test_the_search_shows_every_surface_and_ends() -> None:
     at: Pose2 = HOME
     while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, at, looked_from)) is not None:
         assert view not in looked_from
+        assert (VIEWPOINTS.visible(view) & ~VIEWPOINTS.covered(looked_from)).sum() > 2, "worth the way"
         looked_from.append(view)
         at = view
     assert len(looked_from) < 20

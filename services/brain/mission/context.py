@@ -1,5 +1,6 @@
 """What the leaves of both trees share: time, bus, mission, gripper, peers, and what is shown to the world."""
 
+import re
 from itertools import pairwise
 
 from py_trees.common import Status
@@ -90,13 +91,19 @@ class Context:
         return likelihood(item, self.io.household, self.sightings.rows, self.sightings.date, self.viewpoints)
 
     def told_place(self, item: str) -> str:
-        """Where the person said that the item is, as `take_place` has it; "" for nowhere."""
-        home, steps = self.io.household, self.mission.planning.steps
-        place, _ = take_place(normalise(self.mission.search.chosen.get(item, item)), home)
+        """Where the person said that the item is, as `take_place` has it, be it in a sentence of its own; "" for
+        nowhere."""
+        home, mission = self.io.household, self.mission
+        place, _ = take_place(normalise(mission.search.chosen.get(item, item)), home)
         gone = (
-            a.target for a, b in pairwise(steps) if a.action == "navigate" and b.action == "find" and b.object == item
+            a.target
+            for a, b in pairwise(mission.planning.steps)
+            if a.action == "navigate" and b.action == "find" and b.object == item
         )
-        return place or place_named(normalise(next(gone, "")), home)
+        place = place or place_named(normalise(next(gone, "")), home)
+        said = (take_place(normalise(part), home) for part in re.split(r"[.,;?!]", mission.command))
+        beside = (at for at, thing in said if f" {thing}".endswith(f" {normalise(item)}"))
+        return place or next((at for at in beside if at != mission.destination(item)), "")
 
     def told_points(self, item: str) -> Mask:
         """Which of the viewpoints' points (p,) are where the person said that the item is."""
