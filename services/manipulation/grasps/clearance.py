@@ -147,16 +147,20 @@ class HandClearance:
         return float(self._apart(self._local(target, pose), self._parts).min(initial=FAR))
 
     def _apart(self, points: Array, parts: Sequence[int]) -> Array:
-        """Distance (n,) [m] of points (n, 3), in the frame of the pinch point, from the nearest of the hand's `parts`;
-        negative inside, at most `FAR`.
+        """Distance (m,) [m] from the nearest of the hand's `parts`, negative inside, at most `FAR`, of those of the
+        points (n, 3), in the frame of the pinch point, that are no farther than that from the whole hand.
         """
         model, data = self._model, self._data
-        site = data.site("pinch")
+        site, boxes = data.site("pinch"), model.geom_aabb[parts]
+        turns = data.geom_xmat[parts].reshape(-1, 3, 3)
+        middles = data.geom_xpos[parts] + np.einsum("nij,nj->ni", turns, boxes[:, :3])
+        reach = np.einsum("nij,nj->ni", np.abs(turns), boxes[:, 3:]) + FAR
         local = points @ site.xmat.reshape(3, 3).T + site.xpos
-        least = np.full(len(points), FAR)
-        for part in parts:
-            box = model.geom_aabb[part]
-            beyond = np.abs((local - data.geom_xpos[part]) @ data.geom_xmat[part].reshape(3, 3) - box[:3]) - box[3:]
+        low, high = (middles - reach).min(axis=0), (middles + reach).max(axis=0)
+        local = local[((local >= low) & (local <= high)).all(axis=1)]
+        least = np.full(len(local), FAR)
+        for middle, turn, half in zip(middles, turns, boxes[:, 3:], strict=True):
+            beyond = np.abs((local - middle) @ turn) - half
             inside = np.minimum(beyond.max(axis=1), 0.0)
             least = np.minimum(least, np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside)
         return least
