@@ -18,7 +18,7 @@ from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.plan_grab import plan_grab, refine
 from services.manipulation.planning.planning_scene import obstacles, target_of
-from services.manipulation.planning.stances import SAME, other_stance, stances
+from services.manipulation.planning.stances import MOST, SAME, STAND_OFFS, other_stance, stances
 from services.manipulation.planning.straight_grab import SHORTER
 from services.sim.model import own
 
@@ -108,6 +108,16 @@ def test_where_nothing_reaches_it_no_stance_is_told() -> None:
     high = m.WorldObject("lamp", "box", "white", (*TABLE.center[:2], 2.1), size=(0.05, 0.05, 0.1))
     args = ([high], [(0.0, 0.0, 0.0)], REST, CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach)
     assert other_stance(PLANNER, HOME, high, *args) is None
+
+
+def test_grasps_are_looked_for_once_on_each_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From no stance is there one, and every one is looked at."""
+    looked: list[Target] = []
+    monkeypatch.setattr(PLANNER, "candidates", lambda target: looked.append(target) or [])  # type: ignore[func-returns-value]
+    found, args = bottle(0.0, 0.0), (CONFIG.approach_distance, CONFIG.lift_height, 1.2)
+    assert other_stance(PLANNER, HOME, found, [found], [(0.0, 0.0, 0.0)], REST, *args) is None
+    offered = stances(HOME, found, [(0.0, 0.0, 0.0)], STAND_OFFS)[:MOST]
+    assert 1 <= len(looked) <= 4 < len(offered)
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from msgspec import structs
@@ -11,16 +10,16 @@ from msgspec import structs
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.floor_plan import Receptacle
 from common.furniture_tops import support_at
-from common.geometry import SIDES, Array, Pose2, compose, inverse, yaw_matrix
+from common.geometry import SIDES, Array, Pose2, compose, inverse, to_frame, yaw_matrix
 from common.household import Household
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.grasp import Grasp, is_poor
 from services.manipulation.grasps.target import Target
-from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.plan_grab import GrabPlan, plan_grab, whole_grab
+from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.plan_grab import GrabPlan, whole_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
-from services.manipulation.planning.straight_grab import STANCE_GRASPS, Way, feasible, with_fingers
+from services.manipulation.planning.straight_grab import STANCE_GRASPS, Way, with_fingers
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
 """Distances [m] from the base's middle to the object that are tried. Chosen: the hand comes level from the farthest."""
@@ -28,6 +27,9 @@ SAME, SAME_TURN = 0.06, math.radians(10)
 """A pose no farther [m, rad] from another is the same stance: navigation stops within a third of it."""
 MOST = 10
 """Stances that are tried."""
+SIDE = math.radians(25)
+"""Angle [rad] between two views of an object up to which the grasps looked for in one serve in the other: that between
+two bearings of the hand."""
 
 
 def other_stance(
@@ -47,29 +49,43 @@ def other_stance(
 
     `objects`: all that is known to stand around; `but`: where the base stands and has been sent to; `joints` (7,) of
     the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`: as in `plan_grab`. With
-    `seen`, the object from where the base stands, one of the good grasps of that has to be in reach: to look for grasps
-    anew at every stance takes seconds.
+    `seen`, the object from where the base stands, one of the good grasps of that has to be in reach. Without, grasps
+    are looked for once on each side of it: that takes seconds.
     """
     around = others(objects, found)
-    known = planner.believed(seen) if seen is not None else None
-    good = _good(planner, known) if known is not None else []
-    if known is not None and not good:
-        return None
+    views: list[_View] = []
+    if seen is not None:
+        views = [_View(but[0], known := planner.believed(seen), _good(planner, known))]
+        if not views[0].grasps:
+            return None
     for pose in stances(household, found, but, STAND_OFFS)[:MOST]:
+        if math.dist(to_frame(pose, found.position[:2]), (planner.arm.forward, 0.0)) > reach:
+            continue
+        view = views[0] if seen is not None else next((v for v in views if v.on_side_of(pose, found)), None)
+        if view is None:
+            target = planner.believed(target_of(found, pose, household))
+            grasps = [grasp for stage in planner.candidates(target) for grasp in stage[:STANCE_GRASPS]]
+            views.append(view := _View(pose, target, grasps))
         solids = obstacles(household, pose, around, margin=MARGINS[0])
         way = Way(solids, False, approach, lift, stand_on)
-        if known is not None:
-            if _holds(planner, known, good, compose(inverse(pose), but[0]), way, joints):
-                return pose
-            continue
-        target = target_of(found, pose, household)
-        # What has no straight way in and up needs no search for the ways there and back.
-        if not feasible(planner, target, way, joints):
-            continue
-        with suppress(PlanError):
-            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on)
+        if _holds(planner, view.target, view.grasps, compose(inverse(pose), view.base), way, joints):
             return pose
     return None
+
+
+@dataclass(frozen=True)
+class _View:
+    """Grasps of an object, both in the frame of a `base` (x, y, theta) [map] before it."""
+
+    base: Pose2
+    target: Target
+    grasps: Sequence[Grasp]
+
+    def on_side_of(self, pose: Pose2, found: WorldObject) -> bool:
+        """The object is seen from a pose from about the same side."""
+        x, y = found.position[:2]
+        turns = [math.atan2(y - at[1], x - at[0]) for at in (self.base, pose)]
+        return abs(math.remainder(turns[0] - turns[1], math.tau)) < SIDE
 
 
 def _good(planner: Planner, target: Target) -> list[Grasp]:
