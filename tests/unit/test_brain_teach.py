@@ -164,11 +164,15 @@ def test_what_is_seen_through_a_door_is_looked_at_when_nothing_else_is_left() ->
     assert "search" in bench.state.step
 
 
-def test_under_another_name_it_is_not_looked_at_from_the_same_side_again() -> None:
-    bench = looking(thing("red can", -1.3, -2.2))
+@pytest.mark.parametrize(("name", "y"), [("object-9", -2.21), ("object-3", -2.12)])
+def test_under_another_name_or_measured_elsewhere_it_is_not_looked_at_from_the_same_side_again(
+    name: str, y: float
+) -> None:
+    bench = looking(msgspec.structs.replace(thing("red can", -1.3, -2.2), id="object-3"))
     see(bench, 1, unsure=("red can",))
     first = arrive(bench, 1)
-    renamed = [thing("tomato soup", -9.0, 9.0), thing("brown jar", -1.3, -2.21)]
+    again = msgspec.structs.replace(thing("brown jar", -1.3, y), id=name)
+    renamed = [thing("tomato soup", -9.0, 9.0), again]
     bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=renamed))
     see(bench, 2, unsure=("brown jar",))
     second = arrive(bench, 2)

@@ -13,11 +13,17 @@ SAME_PLACE = 0.03
 
 
 class NearLooks(msgspec.Struct):
-    """The `place` [m, map] of an object, and the directions [rad, map] from it to where the robot has looked at it from
-    nearer: at most ALL_SIDES. Its name and id may have changed since."""
+    """The `place` [m, map] and `id` of an object, and the directions [rad, map] from it to where the robot has looked
+    at it from nearer: at most ALL_SIDES. One of both may have changed since: seen from another side it measures
+    otherwise, and lost from sight it gets another id."""
 
     place: m.Vec3
     directions: list[float]
+    id: str = ""
+
+    def of(self, o: m.WorldObject | m.PossibleObject) -> bool:
+        """Whether they are looks at this object."""
+        return bool(o.id and o.id == self.id) or math.dist(self.place, o.position) < SAME_PLACE
 
 
 class Search(msgspec.Struct):
@@ -54,14 +60,14 @@ class Search(msgspec.Struct):
     unanswered: bool = False
     too_wide: list[str] = []
 
-    def directions(self, place: m.Vec3) -> list[float]:
-        """Directions [rad, map] from which what stands at a place [m, map] was looked at from nearer."""
-        return next((looks.directions for looks in self.near_looks if math.dist(looks.place, place) < SAME_PLACE), [])
+    def directions(self, o: m.WorldObject | m.PossibleObject) -> list[float]:
+        """Directions [rad, map] from which an object was looked at from nearer."""
+        return next((looks.directions for looks in self.near_looks if looks.of(o)), [])
 
-    def looked_near(self, place: m.Vec3, directions: list[float]) -> None:
-        """Note that what stands at a place was looked at from nearer, from these directions as well."""
-        others = [looks for looks in self.near_looks if math.dist(looks.place, place) >= SAME_PLACE]
-        self.near_looks = [*others, NearLooks(place, [*self.directions(place), *directions])]
+    def looked_near(self, o: m.WorldObject, directions: list[float]) -> None:
+        """Note that an object was looked at from nearer, from these directions as well."""
+        others = [looks for looks in self.near_looks if not looks.of(o)]
+        self.near_looks = [*others, NearLooks(o.position, [*self.directions(o), *directions], o.id)]
 
     def drop(self, label: str) -> None:
         """An object is looked at from nearer now."""

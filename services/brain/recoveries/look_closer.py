@@ -49,14 +49,14 @@ class MoveCloser(GoAndLook):
         self._target = self.view = None
         plan, here = ctx.io.household, ctx.robot_pose
         while self.view is None and (left := self._left(ctx)):
-            found = min(left, key=lambda o: len(search.directions(o.position)))
+            found = min(left, key=lambda o: len(search.directions(o)))
             search.drop(found.label)
             x, y, _ = found.position
-            seen_from = search.directions(found.position)
+            seen_from = search.directions(found)
             self.view = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
             # One that cannot be reached, or has no other side, is not tried again either.
             angles = [math.atan2(self.view[1] - y, self.view[0] - x)] if self.view else [0.0] * ALL_SIDES
-            search.looked_near(found.position, angles)
+            search.looked_near(found, angles)
             self._target = found
         ctx.mission.at = ""
 

@@ -78,14 +78,13 @@ class LocateObject(SendGoal):
         for o in self.ctx.objects:
             if o.label in labels and o.seen_at >= self.since and math.dist((x, y), o.position[:2]) <= FARTHEST:
                 angle = math.atan2(y - o.position[1], x - o.position[0])
-                if shows_another_side(angle, self.ctx.mission.search.directions(o.position)):
-                    self.ctx.mission.search.looked_near(o.position, [angle])
+                if shows_another_side(angle, self.ctx.mission.search.directions(o)):
+                    self.ctx.mission.search.looked_near(o, [angle])
 
     def _left(self, labels: list[str]) -> list[str]:
         """Those of the labels whose objects were not looked at from nearer from all sides."""
-        places = {o.label: o.position for o in self.ctx.objects}
-        search = self.ctx.mission.search
-        return [n for n in labels if n not in places or len(search.directions(places[n])) < ALL_SIDES]
+        known, search = {o.label: o for o in self.ctx.objects}, self.ctx.mission.search
+        return [n for n in labels if n not in known or len(search.directions(known[n])) < ALL_SIDES]
 
 
 class TurnOnTheSpot(SendGoal):

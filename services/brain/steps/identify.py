@@ -128,7 +128,7 @@ def candidates(ctx: Context, least: float, near: bool = False, place: str = "") 
         elif much:
             least = max(least, LIKELY) if search.questions >= AT_FIRST else min(least, ROUGHLY)
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
-    left = [p for p in left if not near or search.directions(p.position)]
+    left = [p for p in left if not near or search.directions(p)]
     left = [p for p in left if not place or is_at(p, place, ctx.io.household)]
     rivals = [p for p in left if p.likeness >= RIVAL * left[0].likeness][:MOST_NAMED]
     places = [p.on for p in rivals]
