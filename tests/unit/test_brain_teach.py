@@ -85,8 +85,8 @@ def thing(label: str, x: float, y: float) -> m.WorldObject:
     return m.WorldObject(label=label, kind="can", colour="red", position=(x, y, 0.6), on="living table")
 
 
-def looking(*things: m.WorldObject) -> Bench:
-    bench = asked("find the tomato soup", enable_confirmation=False)
+def looking(*things: m.WorldObject, command: str = "find the tomato soup") -> Bench:
+    bench = asked(command, enable_confirmation=False)
     bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[thing("tomato soup", -9.0, 9.0), *things]))
     bench.send(topics.POSE, m.PoseEstimate(t=bench.now, x=0.0, y=0.0, theta=0.0))
     answer_plan(bench, 1, FIND)
@@ -120,6 +120,17 @@ def test_what_cannot_be_read_from_here_is_looked_at_from_nearer_before_anything_
     assert abs(wrap(math.atan2(-2.3 - goal.y, -1.5 - goal.x) - goal.theta)) < 0.1
     see(bench, 2, label="red can")
     assert ended(bench).outcome == "delivered"
+
+
+def test_what_is_not_where_the_thing_was_said_to_be_is_not_looked_at_from_nearer_at_first() -> None:
+    on_floor = msgspec.structs.replace(thing("red can 2", -1.1, 0.2), on="")
+    bench = looking(thing("red can", -1.5, -2.3), on_floor, command="The tomato soup is on the floor. Find it.")
+    see(bench, 1, unsure=("red can", "red can 2"))
+    goal = arrive(bench, 1)
+    assert math.dist((goal.x, goal.y), on_floor.position[:2]) < 0.9
+    see(bench, 2, unsure=("red can",))
+    arrive(bench, 2)
+    assert "search" in bench.state.step
 
 
 def test_of_several_that_match_those_in_doubt_are_seen_from_nearer_before_anybody_is_asked() -> None:

@@ -12,6 +12,7 @@ from common.kinds import kind_of
 from common.language.normalise import indefinite
 from common.naming.likeness import PLAIN, describes, likeness
 from common.naming.names import normalise
+from common.naming.place_named import is_at
 from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -61,7 +62,9 @@ class LocateObject(SendGoal):
         search.options = pose.candidates
         search.perhaps = [p for p in pose.perhaps if p.id not in search.rejected]
         self._note_near_looks([*pose.unsure, *pose.unlikely])
-        search.unsure, search.unlikely = self._left(pose.unsure), self._left(pose.unlikely)
+        near = pose.unsure if pose.candidates else [n for n in pose.unsure if self._told(n)]
+        later = [n for n in pose.unsure if n not in near]
+        search.unsure, search.unlikely = self._left(near), self._left([*later, *pose.unlikely])
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
             code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
@@ -80,6 +83,11 @@ class LocateObject(SendGoal):
                 angle = math.atan2(y - o.position[1], x - o.position[0])
                 if shows_another_side(angle, self.ctx.mission.search.directions(o)):
                     self.ctx.mission.search.looked_near(o, [angle])
+
+    def _told(self, label: str) -> bool:
+        """Whether the object of that label is where the item was said to be, if anybody has said where."""
+        place, known = self.ctx.told_place(self._item), self.ctx.known_object(label)
+        return not place or known is None or is_at(known, place, self.ctx.io.household)
 
     def _left(self, labels: list[str]) -> list[str]:
         """Those of the labels whose objects were not looked at from nearer from all sides."""
