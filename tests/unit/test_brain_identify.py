@@ -121,6 +121,7 @@ def looks_until(bench: Bench, question: str, likeness: float = 0.1) -> int:
         ("gizmo from the desk", 0.1, 1, 1), ("comb from the desk", 0.2, 1, 1), ("comb", 0.2, 4, 8),
         ("yellow gizmo", 0.1, 2, 8), ("magnifying comb", 0.1, 2, 8), ("comb", 0.1, 9, 16),
         ("comb from the desk", 0.1, 2, 8), ("comb from the study shelf", 0.1, 9, 20),
+        ("gizmo from the study shelf", 0.1, 2, 12),
     ],
 )  # fmt: skip
 def test_the_better_it_fits_and_the_more_was_looked_at_the_sooner_it_is_asked_about(

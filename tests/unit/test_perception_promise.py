@@ -45,6 +45,8 @@ def told(text: str, legible: float = LEGIBLE) -> Sight:
         ("zest", ["zest"], seen("box"), None, True),
         ("zest", ["zest"], seen("mug"), None, False),
         ("zest", ["zest"], seen("box"), MET, False),
+        ("zest", ["zest"], seen("box"), Sight(legible=ROUGHLY), False),
+        ("zest", ["zest"], seen("box"), Sight(legible=ROUGHLY - 1.0), True),
         ("zest", ["zest"], seen("box", text="NEW"), told("NEW"), True),
         ("zest mug", ["zest"], seen("mug"), None, True),
         ("ketchup", ["ketchup"], seen("bottle", "red"), None, True),

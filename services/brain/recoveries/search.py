@@ -12,6 +12,7 @@ from services.brain.recoveries.identify import ask_whether, may_be
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject, ReportNotFound, known_by_name
+from services.brain.steps.identify import MOST_ASKED
 from services.brain.steps.leaf import Settle
 from services.brain.steps.views import MoveToViewpoint
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
@@ -48,21 +49,24 @@ def search(ctx: Context, task: Task) -> Behaviour:
     there = Selector("there", _ask(ctx, task), looked_there, _ask_all(ctx, task, True))
     told = Condition("told", there, lambda: bool(ctx.told_place(task.item)), Status.FAILURE)
     near = [_ask_all(ctx, task), _attempt(ctx, task, "from near", FROM_NEAR, near=True)]
-    return Selector("search", told, *first, _ask(ctx, task, "anywhere"), last, *(near if flat else []))
+    return Selector("search", told, *first, _ask(ctx, task, False), last, *(near if flat else []))
 
 
-def _ask(ctx: Context, task: Task, where: str = "there") -> Condition:
+def _ask(ctx: Context, task: Task, there: bool = True) -> Condition:
     words = normalise(task.item).split()
     least = ROUGHLY if all(known_by_name(ctx, task.item, word) for word in words) else UNFAMILIAR
-    return Condition(f"unknown_{where}", ask_whether(ctx, task, least), lambda: may_be(ctx, least), Status.FAILURE)
+    return _asked(ctx, task, f"unknown_{'there' if there else 'anywhere'}", least, there)
 
 
 def _ask_all(ctx: Context, task: Task, there: bool = False) -> Condition:
-    def worth_it() -> bool:
-        return may_be(ctx, LEAST, place=ctx.told_place(task.item) if there else "")
+    return _asked(ctx, task, "all_there" if there else "all", LEAST, there, most=1)
 
-    asked = ask_whether(ctx, task, LEAST, there=there, most=1)
-    return Condition("all_there" if there else "all", asked, worth_it, Status.FAILURE)
+
+def _asked(ctx: Context, task: Task, node_id: str, least: float, there: bool, most: int = MOST_ASKED) -> Condition:
+    def worth_it() -> bool:
+        return may_be(ctx, least, place=ctx.told_place(task.item) if there else "")
+
+    return Condition(node_id, ask_whether(ctx, task, least, there=there, most=most), worth_it, Status.FAILURE)
 
 
 def _attempt(

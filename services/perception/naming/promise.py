@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from common.household import Household
 from common.messages import WorldObject
 from common.naming.likeness import LEAST, LIKELY, describes, looks_like, other_goods
-from services.perception.naming.sights import Sight
+from services.perception.naming.sights import ROUGHLY, Sight
 from services.perception.naming.text import LIKELY as HALF_READ
 from services.perception.naming.text import SURE, likeness, traces
 from services.perception.naming.vocabulary import COLOURS, PACKED, unlike_said
@@ -37,7 +37,7 @@ def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | Non
         return 0.0
     # A pack may have any colour, and "green" may be what is printed on it.
     found = max(OTHERWISE * packed, looks_like(query, o, household), OTHERWISE * LIKELY if other else 0.0)
-    blank = sight is not None and sight.read and not sight.lines
+    blank = sight is not None and sight.legible >= ROUGHLY and not sight.lines
     if not describes(query, household) and (o.kind not in PACKED or blank):
         found *= RARELY
     if other:
