@@ -67,5 +67,7 @@ def cut_clauses(rest: str) -> list[str]:
 
 
 def _commas_as_and(text: str) -> str:
-    """A comma is an "and": `the mug, the can and the ball`; but `no, the red mug` is one answer."""
-    return re.sub(r"^no and ", "no ", _COMMA.sub(" and ", text.strip(" ,")))
+    """A comma is an "and": `the mug, the can and the ball`; but `no, the red mug` is one answer, and speech is kept."""
+    said = TO_BE_SAID.search(text)
+    head, speech = (text[: said.end()], text[said.end() :]) if said else (text, "")
+    return re.sub(r"^no and ", "no ", _COMMA.sub(" and ", head.lstrip(" ,")) + speech).rstrip(" ,")

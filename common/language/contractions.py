@@ -48,7 +48,7 @@ _CONTRACTIONS = tuple(
         (r"([a-z])\1{2,}", r"\1"),
         (
             r"\b(?!what's left of\b)(\w{3,})'s (?=(?:left|lost|moved|taken|put|hidden|dropped|forgotten|"
-            r"finished|eaten|broken|spilt|"
+            r"vanished|disappeared|finished|eaten|broken|spilt|"
             r"come|run|"
             r"fallen|made|had)\b)",
             r"\1 has ",

@@ -15,7 +15,7 @@ from common.language.exchange import IsPlace, verb_first
 from common.language.lexicon import A_VERB, A_WISH, COMMANDING, HANDLING, TO_GO
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.noun_phrase import NUMBERS
-from common.language.place_told import with_whereabouts
+from common.language.place_told import with_what_is_missed, with_whereabouts
 from common.language.politeness import without_politeness
 from common.language.preamble import with_preamble
 from common.language.repairs import settled
@@ -126,7 +126,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
     text = put_where_labelled(_HEADING.sub("", text), is_place)
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
-    told = with_preamble(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:")), is_place)
+    told = with_preamble(with_what_is_missed(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:"))), is_place)
     whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _AND_TELL.sub(r"\g<look>", whole)

@@ -44,7 +44,8 @@ WISH = (
 FAMILY = (
     "(wife | husband | partner | mother | father | mum | mom | mummy | mommy | mama | dad | daddy | papa | son"
     " | daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | granny | gran"
-    " | nana | grandad | boy | girl | family | brother | sister)"
+    " | nana | grandad | boy | girl | family | brother | sister | aunt | auntie | uncle | nephew | niece | cousin"
+    " | friends | neighbour | neighbours | visitor | visitors | colleague | colleagues | flatmate | twins)"
 )
 PEOPLE = f"([(my | our | the)] {FAMILY} | them | everybody | everyone | people | anybody | anyone | the others)"
 PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"

@@ -3,13 +3,17 @@
 import re
 
 from common.language.exchange import PREPOSITIONS, first_match, verb_first
-from common.language.politeness import without_politeness
+from common.language.politeness import without_lead, without_politeness
 
+_GUESS = (
+    r"(?:(?:i|we) (?:think|believe|guess|reckon|suppose|suspect|bet|would (?:say|guess))(?: that)?|"
+    r"i am (?:pretty |quite |fairly )?sure(?: that)?|maybe|perhaps|probably|possibly|presumably|most likely)"
+)
+"""How sure somebody is of what they say."""
 _IT_IS = (
-    r"(?:(?:(?:(?:i|we) (?:think|believe|guess|reckon)|i am (?:pretty |quite |fairly )?sure)(?: that)? |"
-    r"(?:maybe|perhaps|probably) )?(?:it|they|he|she) "
+    rf"(?:(?:{_GUESS} )?(?:it|they|he|she) "
     r"(?:is|are|(?:should|must|might|could|ought to|(?:is|are) supposed to) be|lies|stands|lives|sits|hangs)"
-    r"(?: lying| standing| still| somewhere| probably| usually| currently)*|"
+    r"(?: lying| standing| still| somewhere| probably| perhaps| maybe| possibly| usually| currently)*|"
     r"(?:i|we) (?:(?:think|believe|guess) (?:i|we) )?(?:(?:must|might|may) have |have )?(?:just |last )?"
     r"(?:left|put|saw|dropped|forgot|placed) (?:it|them))"
 )
@@ -54,6 +58,16 @@ _FOR_SOMEBODY = tuple(
     )
 )
 """Something for somebody, and where that person is."""
+_MISSED = re.compile(
+    r"^(?:(?P<thing>(?:the|my|our) \w+(?: \w+){0,2}?) (?:is|are|has|have) (?:(?:gone|been) )?(?:gone|missing|vanished|"
+    r"disappeared|lost|nowhere(?: to be (?:found|seen))?)|(?:i|we) (?:have |seem to have )?(?:lost|misplaced|mislaid|"
+    r"can not (?:find|see)) (?P<lost>(?:the|my|our) [^,]+?))(?: again| somewhere)?, "
+    rf"(?:{_GUESS}|{_IT_IS}) (?P<where>(?P<how>on|in|at|behind|near|by|next to|beside|under|beneath|below) "
+    r"(?:the|my|our|a|an) [^,]+?),? (?:so |and |but )?(?P<rest>[^,]*\b(?:it|them)\b[^,]*)$"
+)
+"""Something that is missed, where it perhaps is, and what is to be done about it."""
+_HIDDEN = frozenset({"under", "beneath", "below"})
+"""How a thing lies where no camera sees it from where the robot goes."""
 _SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
 
 
@@ -66,6 +80,18 @@ def with_whereabouts(text: str) -> str:
         said.append(one or _with_place(sentences[0]) or sentences[0])
         sentences = sentences[2 if one else 1 :]
     return "".join(said)
+
+
+def with_what_is_missed(text: str) -> str:
+    """`my keys are gone, perhaps on the desk, find them` as `find my keys on the desk`."""
+    found = _MISSED.match(", ".join(s.rstrip(".?!;, ") for s in _SENTENCE.findall(without_lead(text))))
+    if found is None:
+        return text
+    thing = found["thing"] or found["lost"]
+    sought = re.search(r"\b(?:find|look|search|check|see|where)\b", found["rest"])
+    where = found["where"] if sought else re.sub(r"^(?:on|in|at) ", "from ", found["where"])
+    named = thing if found["how"] in _HIDDEN else f"{thing} {where}"
+    return re.sub(r"\b(?:it|them)\b", lambda _: named, found["rest"], count=1)
 
 
 def _with_place(sentence: str) -> str:

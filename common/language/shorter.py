@@ -3,12 +3,15 @@
 import re
 
 from common.language.lexicon import A_VERB, TO_GO
+from common.naming.colours import COLOURS
 
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
 _PREPOSITION = (
     r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
     r"(?:left|right))\b)"
 )
+_LOOKS = rf"(?:{'|'.join(sorted(COLOURS))}|small|big|little|large|tall|other)\b"
+"""How a thing looks, which goes with the noun that another thing of its kind has."""
 _CARDINALS = tuple(enumerate(("one", "two", "three", "four", "five", "six"), 1))
 SHORTER = tuple(
     (re.compile(words), plain)
@@ -158,7 +161,7 @@ SHORTER = tuple(
             r"(leave|put|set|place|drop) it (?:down )?on the (\w+) there\b",
             r"put \1 on the \2 \4",
         ),
-        (r"(?<=\w),? (?:in the end|after all)(?=[?]|$)", ""),
+        (r"(?<=\w),? (?:in the end|after all)(?=[?]|$)|\bwith you (?=to|into|on|in|over)", ""),
         (r"^(there (?:is|are) [^,.;?]+),? (?:is|are)(?: not| n't)? there[?.]+ (?=\w)", r"\1. "),
         (r"\b(where (?:was|is|were|are) (?:it|they|(?:the|my) (?:\w+ )?\w+)) hiding\b", r"\1"),
         (r"\bwhat (it|is|they|are) (it|is|they|are) (?:standing|sitting|lying|resting) on\b", r"where \1 \2"),
@@ -216,8 +219,24 @@ SHORTER = tuple(
             r"where are all the \1s",
         ),
         (r"\bfrom off(?: of)?\b", "from"),
+        (
+            r",? ?\b(?:since|as|while|seeing (?:that|as)|given that) you (?:are|will be|were) "
+            r"(?:(?:going|passing) )?(?:(?:in|at|by|through|to|near) (?:the|my|our) \w+(?: \w+)??|there|up|at it)"
+            r" (?:anyway|anyhow|in any case|already)\b,?",
+            " ",
+        ),
+        (rf"\byou (?:might|may|could) (?:just )?as well (?={A_VERB}\b)", ""),
+        (
+            r"\bwhere (?:might|may|could|can|would|does|do) (?:one|a (?:chap|fellow|person|man|woman|guy|girl|body)|"
+            r"somebody|someone|people) (?=find|get|see)",
+            "where can i ",
+        ),
+        (
+            rf"\b(?:the|that|a) (?:(?!{_LOOKS})\w+ )?(?:thing|thingy|gadget|gizmo|wotsit|whatsit)"
+            rf"(?: (?:for|to|that|which|you|with|of) [^,]+)?, (?:you know,? )?(?=(?:the|a|my) (?!{_LOOKS})\w)",
+            "",
+        ),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
-        (r"\bwith you (?=to|into|on|in|over)", ""),
         (r",? on (?:the|your) way to (?=the|my|our)", " then go to "),
         (r"[.;,]? (not (?:the|a|my) \w+ one)[.;,] (?=(?:the|a|my) )", r", \1, "),
         (r"\b(inside|off|outside) of\b", r"\1"),

@@ -22,7 +22,8 @@ _CRIED = re.compile(
 )
 _CEREMONY = re.compile(
     rf"{_BEGIN}(?P<verb>say|announce|declare|proclaim)(?:,? (?:please|kindly|loudly|aloud|out loud|the following|"
-    r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))))*, (?=\w)"
+    r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))|in an? (?:\w+ )?(?:voice|tone|whisper)|"
+    r"(?:nice and )?(?:loud|clear|quiet|slow)(?:ly)?(?: and (?:loud|clear|quiet|slow)(?:ly)?)?))*, (?:that )?(?=\w)"
 )
 """A verb of saying with a mark before what is said."""
 _TO_BE_ASKED = re.compile(
@@ -36,6 +37,8 @@ _BEFORE_YOU = frozenset({"is", "are", "would", "can", "could", "will"})
 _OF_YOU = {"is": "are", "has": "have", "wants": "want", "needs": "need", "likes": "like", "knows": "know"}
 _NAMELESS = re.compile(r"(?:the|my|our|them|him|her|every\w+|people)\b")
 """How somebody is named without a name to call them by."""
+_QUOTED = re.compile(r"(?<=\bsay),? (?:open )?quotes?,? (?P<said>.+?)(?:,? (?:unquote|(?:close|end) quotes?)\b|$)")
+"""What is to be said between marks that are spoken out."""
 _REPEATED = re.compile(r"^repeat after me[,:]? (?:and )?")
 _THEIRS = re.compile(r"\b(?:their|his|her)\b")
 LONG_SPEECH = re.compile(
@@ -58,7 +61,7 @@ TO_BE_SAID = re.compile(r"(?:^|(?<=[,.;!?] )|(?<= and )|(?<= then )|(?<=please )
 
 def as_speech(text: str) -> str:
     """Normalised text with what is to be said behind `say` and `tell them`: `shout dinner`, `tell mum to come`."""
-    text = _TO_BE_ASKED.sub(_asked, _REPEATED.sub("say ", text))
+    text = _TO_BE_ASKED.sub(_asked, _REPEATED.sub("say ", _QUOTED.sub(r" \g<said>", text)))
     text = _LET_KNOW.sub(r"\g<before>tell them\g<where> that ", _TOLD_TO_DO.sub(_told, text))
     return _CEREMONY.sub(r"\g<before>say ", _CRIED.sub(r"\g<before>say ", text))
 

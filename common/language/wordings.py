@@ -86,7 +86,7 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "say",
-        f"(wish | inform | (say | announce) to) {PEOPLE} [that] <words> | tell {PEOPLE} [that] <words>"
+        f"wish {PEOPLE} [a | an] <words> | (tell | inform | (say | announce) to) {PEOPLE} [that] <words>"
         f" | let {PEOPLE} know [that] <words> | say <words> to {PEOPLE}"
         " | repeat after me [and] <words> | (say | announce) [that] <words> | (tell | inform) <thing> that <words>",
     ),

@@ -119,6 +119,27 @@ from evaluation.everyday.understanding import understand
         ("-", "Something to drink out of, please.", "fetch(red mug)"),
         ("-", "I need something to write with.", "fetch(pen)"),
         ("which:yellow block|blue block", "I need the bigger block.", "pick(yellow block)"),
+        # What is missed, and where it perhaps is.
+        ("-", "The remote's vanished, probably under a cushion, go and look for it.", "find(remote)"),
+        ("-", "My keys are gone, perhaps on the sofa, can you find them?", "goto(sofa); find(keys)"),
+        ("-", "I can't find my phone, it must be in the study, could you get it for me?", "fetch(phone)"),
+        ("-", "My keys are gone. I think they are on the desk. Could you fetch them?", "fetch(keys)"),
+        ("busy:find my purse", "It's alright, it was in my coat all along!", "stop()"),
+        # Speech, how it is to be spoken, and to whom.
+        ("-", "Say, nice and loud, that dinner is ready.", "say(dinner is ready)"),
+        ("-", "Go to the study and say, quote, the boss is here, unquote.", "goto(study); say(the boss is here)"),
+        ("-", "Go to the bedroom and say: Gran, your tea is ready.", "goto(bedroom); say(gran your tea is ready)"),
+        ("-", "Say buonasera to my friends.", "say(buonasera)"),
+        ("-", "Wish my aunt a merry Christmas.", "say(merry christmas)"),
+        # Names that come late, and what goes along with a way.
+        ("-", "Fetch us the wotsit, the battery thing for the phone, the power bank.", "fetch(power bank)"),
+        (
+            "-",
+            "Bring me the apple and, as you're in the kitchen anyway, the bowl.",
+            "fetch(apple) & fetch(yellow bowl)",
+        ),
+        ("last:put the green can in the recycling bin", "the red one and all", "put(red can, recycling bin)"),
+        ("-", "And where might a chap find a bit of soup?", "answer(dresser)"),
     ],
 )
 def test_the_form_is_understood(context: str, said: str, right: str) -> None:

@@ -17,7 +17,7 @@ from services.planner.grammar.asides import with_tales_apart, without_asides
 from services.planner.grammar.chunks import chunks
 from services.planner.grammar.guess import SURE, Guess, answer, guess
 from services.planner.grammar.sentences import MAX_CHARACTERS, read_text
-from services.planner.grammar.spelling import corrected, renamed
+from services.planner.grammar.spelling import MARKS, corrected, renamed
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.places import NoSuchPlace
@@ -171,12 +171,12 @@ class Attempts:
     def _without_slips(self, refusal: Refusal, literally: bool) -> list[PlanStep] | None:
         """Slips in verbs and small words are undone; a name is never exchanged for another unasked."""
         words = self._command_words().split()
-        bare = [w.strip(",;.!?") for w in words]
+        bare = [w.strip(MARKS) for w in words]
         colours, names = self._vocabulary.words()
         right, named = corrected(bare, colours | WORDS, names, REFUSED)
         text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
         if right == bare:
-            right, named = renamed(bare, self._vocabulary.names(), colours, names), True
+            right, named = renamed(words, self._vocabulary.names(), colours, names), True
             text = " ".join(right)
         if right == bare or (named and literally):
             return None

@@ -8,6 +8,8 @@ from common.language.normalise import REMEMBERED
 
 LONG_WORD = 5
 """Letters from which on a name may be taken for a slip of another (chosen: `cat` is no slip of `can`)."""
+MARKS = ",;.!?"
+"""Marks that stand behind words."""
 LONGEST_RUN = 3
 """Most words that are one name misheard (chosen)."""
 SOUNDS_PER_SLIP = 6
@@ -48,22 +50,25 @@ def corrected(
 def renamed(words: Sequence[str], names: Iterable[str], colours: Container[str], kinds: Container[str]) -> list[str]:
     """Words with a run of them replaced by the only name that sounds much like it: `the dress her` as `the dresser`.
 
+    No run goes beyond a word with a mark behind it: `the sofa, can you` has no soda can in it.
     The words as they are where there is no such name, or several. A kind with its colours describes a thing of its own,
     however much it sounds like another: `the green bowl` beside a green bottle.
     """
     sounds = {name: _sound(name.replace(" ", "")) for name in names}
-    runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(0, b - LONGEST_RUN), b)]
+    bare = [w.strip(MARKS) for w in words]
+    begins = [max((at + 1 for at in range(b - 1) if words[at] != bare[at]), default=0) for b in range(len(words) + 1)]
+    runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(begins[b], b - LONGEST_RUN), b)]
     for begin, end in sorted(runs, key=lambda run: run[0] - run[1]):
-        said = _sound("".join(words[begin:end]))
+        said = _sound("".join(bare[begin:end]))
         allowed = len(said) // SOUNDS_PER_SLIP
-        spelled = " ".join(words[begin:end])
-        described = end - begin > 1 and words[end - 1] in kinds and all(w in colours for w in words[begin : end - 1])
+        spelled = " ".join(bare[begin:end])
+        described = end - begin > 1 and bare[end - 1] in kinds and all(w in colours for w in bare[begin : end - 1])
         if len(said) < LONG_WORD or spelled in sounds or described:
             continue
         near = {n for n, s in sounds.items() if abs(len(s) - len(said)) <= allowed and distance(s, said) <= allowed}
         if len(near) == 1 and (end - begin > 1 or " " in next(iter(near))):
-            return [*words[:begin], *next(iter(near)).split(), *words[end:]]
-    return list(words)
+            return [*bare[:begin], *next(iter(near)).split(), *bare[end:]]
+    return bare
 
 
 def _alike(word: str, known: set[str]) -> str | None:
