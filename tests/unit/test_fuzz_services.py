@@ -37,6 +37,7 @@ def battered() -> Iterator[Stack]:
     robot.close()
 
 
+@pytest.mark.slow
 def test_every_service_counted_what_it_refused(battered: Stack) -> None:
     for name in (*battered.members, "sim"):
         io = battered.bus.ios[name]
@@ -44,6 +45,7 @@ def test_every_service_counted_what_it_refused(battered: Stack) -> None:
         assert sum(io.drops[k] for k in commands) > 0, name
 
 
+@pytest.mark.slow
 def test_physics_is_unharmed(battered: Stack) -> None:
     assert np.isfinite(battered.sim.physics.data.qpos).all()
     assert np.isfinite(battered.sim.physics.data.ctrl).all()
@@ -52,6 +54,7 @@ def test_physics_is_unharmed(battered: Stack) -> None:
     assert low[0] - 1 < x < high[0] + 1 and low[1] - 1 < y < high[1] + 1
 
 
+@pytest.mark.slow
 def test_they_still_do_their_jobs(battered: Stack) -> None:
     robot, bus = battered, battered.bus
     bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="cancel", id="calm"))

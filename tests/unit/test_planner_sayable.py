@@ -89,7 +89,7 @@ def plan_of(command: str, objects: list[WorldObject], held: str, rejected: tuple
     return plan
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 6))])
 def test_every_command_that_can_be_heard_is_planned_or_refused_with_its_reason(seed: int) -> None:
     rng, speaker = random.Random(seed), Speaker(seed)
     planned = 0

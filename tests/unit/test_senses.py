@@ -40,6 +40,7 @@ def test_probabilities_are_of_the_senses() -> None:
     assert sense in AT_WORK.senses and 1 / len(AT_WORK.senses) < p <= 1
 
 
+@pytest.mark.slow
 def test_sentences_at_work_that_nobody_worked_on() -> None:
     rows = [row for row in lists()["36"] if row.context.startswith("busy:")]
     verdicts = [verdict(row, understand(row)) for row in rows]

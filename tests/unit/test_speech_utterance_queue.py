@@ -92,6 +92,7 @@ def test_the_wake_word_and_a_command_in_one_breath(robot: Robot, said: dict[str,
     assert not robot.stops and not robot.results
 
 
+@pytest.mark.slow
 def test_a_command_may_follow_the_wake_word_after_a_pause_but_only_one(robot: Robot, said: dict[str, Samples]) -> None:
     robot.hear(said["hey jarvis"])
     assert robot.states()[-1] == "listening" and not robot.commands
@@ -110,6 +111,7 @@ def test_a_command_may_pause_in_the_middle(robot: Robot, said: dict[str, Samples
     assert "speaking" not in robot.states()
 
 
+@pytest.mark.slow
 def test_who_says_it_again_after_nonsense_is_understood(robot: Robot, said: dict[str, Samples]) -> None:
     robot.hear(said["hey jarvis"])
     robot.hear(said["the weather is nice today"], after=0.0)
@@ -155,6 +157,7 @@ def test_what_the_detector_took_for_the_wake_word_is_verified_by_what_else_was_h
     robot.io.shutdown()
 
 
+@pytest.mark.slow
 def test_a_verified_wake_word_is_no_part_of_what_was_transcribed(said: dict[str, Samples]) -> None:
     front_end = FrontEnd(CONFIG, SCENE, grammars(CONFIG, SCENE))
     right = front_end.recognise(said["hey jarvis, bring me the red mug"], "woken", 0.5)
