@@ -1,6 +1,7 @@
 """Perception of the things that a household lists, in the shipped flat.
 
-The table compares what is detected with the simulation's own poses, and asks for things that are not there.
+The table compares what is detected with the simulation's own poses, and asks for things that are not there. The peer
+gets the same pixels of each thing and takes the middle of the visible points and the nearest colour for its answer.
 """
 
 import argparse
@@ -14,10 +15,12 @@ from bench.perception.views import RANGE, Looked, stand, take, visible
 from common.household import told
 from common.messages import WorldObject
 from common.rendering.renderer import Renderer
-from common.scene import load_scene
+from common.scene import Scene, load_scene
 from services.perception.detect import ClassicalDetector
 from services.perception.detection import Detection
 from services.perception.grounding import ground
+from services.perception.segments import segmentation
+from services.perception.views import colour
 from services.perception.views.view import View
 from services.sim.layout import Placement, place_objects
 from services.sim.world import world_mjcf
@@ -47,6 +50,17 @@ class Score:
         )
 
 
+def naive(view: View, scene: Scene, placement: Placement) -> tuple[float, bool] | None:
+    """The peer: error and rightness for the segment at an object's place."""
+    for segment in segmentation.segments(view, scene, RANGE):
+        middle = segment.points.mean(axis=0)
+        if math.hypot(middle[0] - placement.position[0], middle[1] - placement.position[1]) < NEAR:
+            rgb = colour.typical(view.rgb[segment.rows, segment.columns])
+            named = min(scene.objects, key=lambda o: colour.difference(rgb, o.rgba))
+            return math.dist(middle, placement.position), named.name == placement.spec.name
+    return None
+
+
 class Listed:
     """What perception makes of the household's own things."""
 
@@ -54,7 +68,7 @@ class Listed:
         self._args = args
         self._scene = load_scene("apartment")
         self._household = told(self._scene)
-        self._ours = Score()
+        self._ours, self._peer = Score(), Score()
         self._seen = self._total = self._false = self._absent = self._abstained = 0
 
     def views(self) -> Iterator[Looked]:
@@ -91,6 +105,10 @@ class Listed:
             self._ours.right += best.label == p.spec.name
         if self._args.verbose and (best is None or best.label != p.spec.name):
             print(f"view {self._seen}: {p.spec.name} was taken for {best.label if best else 'nothing'}")
+        other = naive(view, self._scene, p)
+        if other is not None:
+            self._peer.errors.append(other[0])
+            self._peer.right += other[1]
 
     def _ask_for_what_is_not_there(self, looked: Looked, found: list[Detection]) -> None:
         world = [
@@ -111,5 +129,6 @@ class Listed:
         print(f"{self._seen} views, {self._total} visible objects within {RANGE:.0f} m, {size}")
         print(f"{'':28} {'found':>7} {'named':>7} {'median cm':>9} {'mean':>7} {'p95':>7}")
         print(self._ours.row("fitted models", self._total))
+        print(self._peer.row("middle of points and colour", self._total))
         share = self._abstained / max(1, self._absent)
         print(f"asked for what is not in view: abstained {share:.3f} of {self._absent}; false objects: {self._false}")
