@@ -8,7 +8,7 @@ export OMP_NUM_THREADS = 1
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 ARGS ?=
-BENCHES ?= processes grasp speech
+BENCHES ?= physics bus processes grasp speech
 
 .PHONY: help setup demo test test-slow test-all mutants check test-compose bench lock image wheels clean
 
