@@ -150,7 +150,7 @@ class ManipulationService:
             if self._let_go():
                 return "put down by an earlier attempt, the gripper is open"
             raise Failure("LOST_OBJECT", "nothing was held, the gripper is open")
-        return (yield from self._with_planner(place_executor.place(robot, "")))
+        return (yield from self._with_planner(recovery.brought_back(robot, place_executor.place(robot, ""))))
 
     def _let_go(self) -> bool:
         """An earlier attempt of this goal has opened the fingers over its place."""
@@ -164,11 +164,11 @@ class ManipulationService:
             known = ", ".join(r.name for r in self._io.household.receptacles)
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
         if not robot.grip.holds():
+            yield from self._with_planner(recovery.retract_empty(robot))
             if self._let_go():
-                yield from self._with_planner(recovery.retract_empty(robot))
                 return "put down by an earlier attempt, the gripper is open"
             raise Failure("NOT_HOLDING", "nothing is in the gripper")
-        return (yield from self._with_planner(place_executor.place(robot, where, beside)))
+        return (yield from self._with_planner(recovery.brought_back(robot, place_executor.place(robot, where, beside))))
 
     # --- running
     def _advance(self, now: float) -> None:

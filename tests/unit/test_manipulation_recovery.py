@@ -1,11 +1,19 @@
 """An arm whose process died with the hand full: the next one lifts and folds it in before it says `done`."""
 
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import cast
+
 import msgspec
 import pytest
 
 from common import messages as m
 from common import topics
+from common.robot.grip import Grip
+from services.manipulation.execution import recovery
 from services.manipulation.execution.recovery import at_carry
+from services.manipulation.execution.robot import Failure, Steps
+from services.manipulation.execution.robot import Robot as ExecutingRobot
 from tests.mission import Robot
 from tests.unit.test_manipulation_service import wait
 
@@ -39,5 +47,54 @@ def test_a_full_hand_is_folded_in(killed_in: str, into: float) -> None:
     assert grabbed["status"] == "done" and "already holding" in grabbed["detail"], grabbed
     assert robot.truth()["holding"] == ITEM
     arm = robot.members["manipulation"][0]._robot
+    assert at_carry(arm.planner, arm.joints)
+    robot.close()
+
+
+@pytest.mark.parametrize(
+    ("width", "force", "code", "back"),
+    [(0.0, 0.0, "SLIPPED", ["empty"]), (0.066, 25.0, "BLOCKED", ["grasped"]), (0.066, 25.0, "STUCK", [])],
+)
+def test_an_arm_whose_placing_failed_is_taken_back_first(
+    width: float, force: float, code: str, back: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    went: list[str] = []
+
+    def way(name: str) -> Callable[..., Steps[None]]:
+        def steps(*_: object) -> Steps[None]:
+            yield
+            went.append(name)
+
+        return steps
+
+    def placing() -> Steps[str]:
+        yield
+        raise Failure(code, "")
+
+    monkeypatch.setattr(recovery, "retract_empty", way("empty"))
+    monkeypatch.setattr(recovery, "retract_grasped", way("grasped"))
+    with pytest.raises(Failure) as failed:
+        list(recovery.brought_back(cast(ExecutingRobot, SimpleNamespace(grip=Grip(width, force))), placing()))
+    assert (failed.value.code, went) == (code, back)
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.slow
+def test_what_is_lost_over_its_place_leaves_no_arm_held_out() -> None:
+    robot = Robot("minimal", seed=4, settings=("camera.sensors=ideal",))
+    robot.advance(0.5)
+    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {ITEM}", "id": "t.1"}}'.encode())
+    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
+    assert wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)["status"] == "done"
+    arm = robot.members["manipulation"][0]._robot
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.3"}')
+    end = robot.now + 20.0
+    while at_carry(arm.planner, arm.joints):
+        assert robot.now < end
+        robot.tick()
+    robot.sim.physics.data.joint(ITEM.replace(" ", "_")).qpos[:3] = 3.0, 3.0, 0.1
+    lost = wait(robot, topics.MANIPULATION_STATUS, "t.3", 40.0)
+    assert (lost["status"], lost["code"]) == ("failed", "SLIPPED"), lost
     assert at_carry(arm.planner, arm.joints)
     robot.close()

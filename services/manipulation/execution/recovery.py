@@ -9,6 +9,7 @@ from common.messages import ObjectRef
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import BLOCKED
 from services.manipulation.arm.trajectory import Leg
+from services.manipulation.execution.releasing import STUCK
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner
@@ -86,6 +87,25 @@ def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
         robot.grasped = held
         robot.source.remember(held.label, None, "", robot.now)
     return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
+
+
+def brought_back(robot: Robot, steps: Steps[str]) -> Steps[str]:
+    """Steps that leave the arm over a surface where they fail: it is taken back before that is said.
+
+    The base drives on after a failure, and an arm that is held out meets furniture on the way.
+
+    Raises:
+        Failure: as the steps do. An arm that finds no way back stays, with what it holds or what hangs on it.
+    """
+    try:
+        return (yield from steps)
+    except Failure as failure:
+        if failure.code != STUCK:
+            try:
+                yield from retract_grasped(robot, None) if robot.grip.holds() else retract_empty(robot)
+            except Failure as further:
+                robot.io.log.warning("on the way back", code=further.code, detail=further.detail)
+        raise
 
 
 def retract_empty(robot: Robot) -> Steps[None]:
