@@ -205,7 +205,8 @@ class Breath:
 
 def test_silence_is_no_transcription_of_what_was_said() -> None:
     model = Moonshine(None, Breath(), TOKENS, beam=8)  # type: ignore[arg-type]
-    assert [said.text for said in model.freely(EncodedUtterance({}, 1, 2), lambda text: 0.0)] == ["mug"]
+    found = model.freely(EncodedUtterance({}, 1, 2), lambda text: 0.0, lambda text: 0.0)
+    assert [said.text for said in found] == ["mug"]
 
 
 class Transcriber:
@@ -229,7 +230,8 @@ class Transcriber:
 
 
 def test_a_transcription_has_to_fit_the_time_that_was_spoken() -> None:
-    recogniser = Recogniser(CONFIG, Transcriber(), {"command": Grammar(("wait",), {})}, lambda text: 0.0)  # type: ignore[arg-type]
+    grammars, free = {"command": Grammar(("wait",), {})}, lambda text, whole=False: 0.0
+    recogniser = Recogniser(CONFIG, Transcriber(), grammars, free, free)  # type: ignore[arg-type]
     for seconds, text in ((0.6, "I can't"), (2.0, "I can't reach the mug on the shelf")):
         heard = PreparedUtterance(np.zeros((1, RATE), np.float32), seconds)
         assert recogniser.recognise(heard, "command").free == text

@@ -12,11 +12,11 @@ from common.sound import RATE
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
-from services.speech.recognise.expected import Expectation, classes
 from services.speech.recognise.free_text import cost, freely, without_itself
 from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
 from services.speech.recognise.wake_text import without_wake
+from services.speech.recognise.word_ngrams import WordNgrams, classes
 
 BEFORE, AFTER = 0.2, 0.6
 """Sound kept around the speech [s]. Chosen: room for soft beginnings and endings, which voice detection misses."""
@@ -74,7 +74,7 @@ class FrontEnd:
 
     def _know(self, household: Household, names: Sequence[str]) -> None:
         self._names = known_names(self._config, household, names)
-        self._expected = Expectation(classes(self._config, household, names), self._config.wake)
+        self._expected = WordNgrams(classes(self._config, household, names), self._config.wake)
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
         """Recognise 16 kHz int16 samples (n,); `detected` is the wake word detector's score for them."""

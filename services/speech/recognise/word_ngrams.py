@@ -4,7 +4,7 @@ Absolute discounting (Ney, Essen and Kneser, "On structuring probabilistic depen
 modelling", 1994) over words, with one class each for things, their plurals, places and colours, so that any household's
 names are expected where the learnt ones were (Brown et al., "Class-based n-gram models of natural language", 1992).
 Shallow fusion with the network (Gulcehre et al., "On using monolingual corpora in neural machine translation", 2015).
-`python -m bench.expected` learns it.
+`python -m bench.word_ngrams` learns it.
 """
 
 import math
@@ -24,8 +24,8 @@ from services.speech.recognise.grammar import vocabulary
 from services.speech.recognise.token_trie import letters
 from services.speech.recognise.wake_text import without_wake
 
-TABLE = "expected.npz"
-"""Beside this module: what `bench.expected` wrote."""
+TABLE = "word_ngrams.npz"
+"""Beside this module: what `bench.word_ngrams` wrote."""
 WEIGHT = 0.2
 """Weight of the model's logarithm beside the network's (chosen on six voices, quiet, in babble and in echoes)."""
 PER_WORD = 3.0
@@ -65,7 +65,7 @@ def table() -> Table:
         return Table(words, **{name: stored[name] for name in Table._fields[1:]})
 
 
-class Expectation:
+class WordNgrams:
     """Costs of sentences of a household with these `classes` of words; `wake`: what may stand before a sentence."""
 
     def __init__(self, classes: Mapping[str, str], wake: Iterable[str], learnt: Table | None = None) -> None:

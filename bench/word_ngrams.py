@@ -1,7 +1,7 @@
-"""The model of what people say to the robot (services/speech/recognise/expected.py), learnt from tests/data.
+"""The model of what people say to the robot (services/speech/recognise/word_ngrams.py), learnt from tests/data.
 
-python -m bench.expected                 # learns from all lists that may be learnt from and writes its file
-python -m bench.expected --without 34 35 # learns from all the others, and prints what a word of these costs
+python -m bench.word_ngrams                 # learns from all lists that may be learnt from and writes its file
+python -m bench.word_ngrams --without 34 35 # learns from all the others, and prints what a word of these costs
 """
 
 import math
@@ -19,7 +19,7 @@ from common.language.normalise import normalise
 from evaluation.everyday.flat import HOME
 from evaluation.everyday.sentences import all_lists
 from services.speech.config import SpeechConfig
-from services.speech.recognise import expected
+from services.speech.recognise import word_ngrams
 
 HELD_BACK = frozenset(str(number) for number in range(36, 45))
 """Lists that show what the rest is worth: no model learns from them."""
@@ -33,35 +33,35 @@ Ngram = tuple[int, ...]
 def main() -> int:
     args = arguments(__doc__).parse_args()
     parameters = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})
-    classes = expected.classes(parameters, HOME, ())
+    classes = word_ngrams.classes(parameters, HOME, ())
     lists = all_lists()
     said = {k: [tuple(normalise(row.said).split()) for row in rows] for k, rows in lists.items() if k not in HELD_BACK}
     learnt_from = [words for k, rows in said.items() if k not in args.without for words in rows]
     learnt = learn(learnt_from, classes)
     if args.without:
-        cost = expected.Expectation(classes, parameters.wake, learnt)
+        cost = word_ngrams.WordNgrams(classes, parameters.wake, learnt)
         rest = [" ".join(words) for k in args.without for words in said[k]]
         words = sum(len(text.split()) for text in rest)
-        total = sum(cost(text, whole=True) for text in rest) / expected.WEIGHT
-        print(f"{total / words + expected.PER_WORD:.2f} a word (natural logarithm) in {len(rest)} sentences")
+        total = sum(cost(text, whole=True) for text in rest) / word_ngrams.WEIGHT
+        print(f"{total / words + word_ngrams.PER_WORD:.2f} a word (natural logarithm) in {len(rest)} sentences")
         return 0
-    path = Path(expected.__file__).with_name(expected.TABLE)
+    path = Path(word_ngrams.__file__).with_name(word_ngrams.TABLE)
     fields = {name: getattr(learnt, name) for name in learnt._fields[1:]}
     np.savez_compressed(path, words=np.array(list(learnt.words)), **fields)
     print(f"{path}: {path.stat().st_size // 1000} kB, learnt from {len(learnt_from)} sentences")
     return 0
 
 
-def learn(said: Iterable[tuple[str, ...]], classes: Mapping[str, str]) -> expected.Table:
+def learn(said: Iterable[tuple[str, ...]], classes: Mapping[str, str]) -> word_ngrams.Table:
     """The model of sentences in words, of which some belong to `classes`."""
     sentences = [tuple(classes.get(word, word) for word in words) for words in said]
     often = Counter(word for words in sentences for word in set(words))
     known = sorted(word for word, times in often.items() if times >= LEAST)
-    numbers = {word: k for k, word in enumerate((expected.START, expected.END, expected.OTHER, *known))}
+    numbers = {word: k for k, word in enumerate((word_ngrams.START, word_ngrams.END, word_ngrams.OTHER, *known))}
     three: Counter[Ngram] = Counter()
-    start = numbers[expected.START]
+    start = numbers[word_ngrams.START]
     for words in sentences:
-        line = (start, start, *(numbers.get(w, numbers[expected.OTHER]) for w in words), numbers[expected.END])
+        line = (start, start, *(numbers.get(w, numbers[word_ngrams.OTHER]) for w in words), numbers[word_ngrams.END])
         three.update(zip(line, line[1:], line[2:], strict=False))
     two = Counter(gram[1:] for gram in three)
     one = Counter(gram[1:] for gram in two)
@@ -72,7 +72,7 @@ def learn(said: Iterable[tuple[str, ...]], classes: Mapping[str, str]) -> expect
     left = after[()]
     singles = [math.log(first.get((k,), left / size)) for k in range(size)]
     pairs, triples = sorted(second), sorted(third)
-    return expected.Table(
+    return word_ngrams.Table(
         numbers,
         np.array(singles, np.float16),
         _logs(after_one.get((k,), 1.0) for k in range(size)),
