@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import cast
 
 import msgspec
+import numpy as np
 import pytest
 
 from common import messages as m
@@ -97,4 +98,22 @@ def test_what_is_lost_over_its_place_leaves_no_arm_held_out() -> None:
     lost = wait(robot, topics.MANIPULATION_STATUS, "t.3", 40.0)
     assert (lost["status"], lost["code"]) == ("failed", "SLIPPED"), lost
     assert at_carry(arm.planner, arm.joints)
+    robot.close()
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.slow
+def test_what_is_held_does_not_creep_out_of_the_hand() -> None:
+    robot = Robot("minimal", seed=4, settings=("camera.sensors=ideal",))
+    robot.advance(0.5)
+    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {ITEM}", "id": "t.1"}}'.encode())
+    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
+    assert wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)["status"] == "done"
+    robot.advance(2.0)
+    physics = robot.sim.physics
+    held = physics.data.xpos[physics.bodies[ITEM]]
+    before = held.copy()
+    robot.advance(30.0)
+    assert np.abs(held - before).max() < 0.0005
     robot.close()
