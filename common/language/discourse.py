@@ -53,7 +53,11 @@ _GO_AND = (
     rf"\b{TO_GO}(?: over| along| across| down| up)* (?:to|into|in) (?P<place>(?:the|my|our) \w+(?: \w+)?)"
     r" (?:and|to) (?:see|tell me|check|look|find out|report|let me know)(?: back)? "
 )
-_GO_AND_ASK = re.compile(rf"{_GO_AND}(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) (?!it\b|there\b)\w+)")
+_OF_A_PLACE = r"\b.+ (?:on|in|at) (?!it\b|there\b)\w+"
+_GO_AND_ASK = re.compile(rf"{_GO_AND}(?=(?:what|which|how many){_OF_A_PLACE})")
+_GO_AND_CHECK = re.compile(
+    rf"(?:{_GO_AND}|\bgo(?: over)? (?:and|to) (?:see|check|look|find out) )(?=(?:if|whether){_OF_A_PLACE})"
+)
 """`go to the desk and see` before a question that names the place itself: the way there need not be said."""
 _GO_AND_LOOK = re.compile(
     rf"{_GO_AND}what (?:is (?:(?:in|on) )?(?:there|it)|there is|you (?:can )?(?:see|find)(?: there)?)"
@@ -130,7 +134,9 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _AND_TELL.sub(r"\g<look>", whole)
-    whole = _GO_AND_LOOK.sub(r"go and look in \g<place>", _GO_AND_ASK.sub("tell me ", whole))
+    whole = _GO_AND_LOOK.sub(
+        r"go and look in \g<place>", _GO_AND_CHECK.sub("check ", _GO_AND_ASK.sub("tell me ", whole))
+    )
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", whole)
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)

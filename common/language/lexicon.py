@@ -45,7 +45,7 @@ FAMILY = (
     "(wife | husband | partner | mother | father | mum | mom | mummy | mommy | mama | dad | daddy | papa | son"
     " | daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | granny | gran"
     " | nana | grandad | boy | girl | family | brother | sister | aunt | auntie | uncle | nephew | niece | cousin"
-    " | friends | neighbour | neighbours | visitor | visitors | colleague | colleagues | flatmate | twins)"
+    " | friends | neighbour | neighbours | visitor | visitors | colleague | colleagues | flatmate | twins | folks)"
 )
 PEOPLE = f"([(my | our | the)] {FAMILY} | them | everybody | everyone | people | anybody | anyone | the others)"
 PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
@@ -61,7 +61,7 @@ ASK = (
     "[[can you | could you] tell me | remind me | explain [to] me | let me know"
     " | [do you | would you | might you | (does | do) (anybody | anyone | somebody | someone)] "
     "[happen to] (know | remember | recall) | [have you [got]] any (idea | clue)"
-    " | find out | i wonder | see | so | and"
+    " | [go and] (find out | see | check) | i wonder | so | and"
     " | (did | do) you (see | notice | remember)]"
 )
 BE = "(is | are | was | were)"

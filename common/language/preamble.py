@@ -25,6 +25,13 @@ _WISHED = re.compile(
     r"(?:so |and )?(?P<request>[^.;!?]+)[.!]?$"
 )
 """What somebody else would like to have or see, and what is asked for of it."""
+_STILL_THERE = re.compile(
+    rf"^(?P<tale>[^.;!?]+?),? (?:but|and|only) (?P<thing>{_THING}) (?:is|are) "
+    r"(?:still |yet |just )?(?:lying |standing )?"
+    r"(?P<where>(?:on|in|at|under|behind) (?:the|my|our) [^,.;!?]+?)[.;!] (?:so |and )?(?P<request>[^.;!?]+)[.!?]*$"
+)
+"""What somebody tells of, in which something has stayed somewhere, and what is asked for of it."""
+_ROOM_TOLD = re.compile(r"\b(?:in|into|from|through) (?P<room>(?:the|my|our) \w+(?: room)?)\b")
 _BROUGHT = re.compile(
     r"^(?:please )?(?:bring|fetch|get|carry) (?:it|them)(?: back)?"
     r"(?: (?:through|over|along|across|down|up|here|in|to me))*$"
@@ -84,6 +91,10 @@ def with_preamble(text: str, is_place: IsPlace) -> str:
             request = _BACK_THERE.sub(where, asked, count=1) if where else asked
             if (whole := named(request, told["thing"])) != request:
                 return whole
+    if (told := _STILL_THERE.match(text)) and _HANDLED.match(asked := without_politeness(told["request"])):
+        rooms = _ROOM_TOLD.findall(told["tale"])
+        where = re.sub(r"\bin there$", f"in {rooms[-1]}" if rooms else "", told["where"]).strip()
+        return named(asked, f"{told['thing']} {re.sub(r'^(?:on|in|at) ', 'from ', where)}")
     if asker := first_match(_ASKER_AT, text):
         known = is_place(tuple(w for w in asker["where"].split()[1:] if w not in DETERMINERS))
         if known and PREPOSITIONS.isdisjoint(asker["thing"].split()):

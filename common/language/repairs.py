@@ -83,7 +83,7 @@ _THE_OTHER_ONE = re.compile(
     r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
 )
 _WILL_DO = re.compile(
-    r"^(?P<said>(?!.*\b(?:if|or|not)\b)[^,]* (?:an?|some|something) [^,]+), (?P<one>(?:the|my|that) (?:\w+ ){1,3}?)"
+    r"^(?P<said>(?!.*\b(?:if|or|not)\b)[^,]* (?:an?|some|something) [^,]+), (?P<one>(?:the|my|that) (?:\w+ ){1,6}?)"
     r"(?:will|would) (?:do|be (?:fine|ok|okay|good|enough))$"
 )
 """Something of a kind, and which one is as good as any."""

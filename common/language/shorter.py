@@ -147,6 +147,7 @@ SHORTER = tuple(
             r"(?:[,.;]? (?:so )?(?:please )?forget (?:it|that name|that))?[.!]?$",
             r"forget the name \1",
         ),
+        (r"^(?:please )?do not call (?:it|this|that) (.+?) any(?: longer| ?more)[.!]?$", r"forget the name \1"),
         (
             r"\b((?:tidy|clear|clean|sort)(?: up| off)? (?:the|my|our) \w+(?: \w+)?)[?!.,;]+ (?:and )?"
             r"(?:just |simply |please )*"
@@ -243,8 +244,7 @@ SHORTER = tuple(
         (r"\bone more(?= please$|$)", "another one"),
         (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),
-        (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
-        (r"\b(left|right)[- ]hand\b", r"\1"),
+        (r"\b(?:far|extreme|very|outer) (left|right)\b|\b(left|right)[- ]hand\b", r"\1\2"),
     )
 )  # fmt: skip
 """Several words for which there are fewer, wherever they stand."""

@@ -22,7 +22,9 @@ _CRIED = re.compile(
 )
 _CEREMONY = re.compile(
     rf"{_BEGIN}(?P<verb>say|announce|declare|proclaim)(?:,? (?:please|kindly|loudly|aloud|out loud|the following|"
-    r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))|in an? (?:\w+ )?(?:voice|tone|whisper)|"
+    r"word for word|"
+    r"to (?:everyone|everybody|all|the (?:whole )?(?:house|room|family))|"
+    r"in an? (?:\w+ )?(?:voice|tone|whisper)|"
     r"(?:nice and )?(?:loud|clear|quiet|slow)(?:ly)?(?: and (?:loud|clear|quiet|slow)(?:ly)?)?))*, (?:that )?(?=\w)"
 )
 """A verb of saying with a mark before what is said."""

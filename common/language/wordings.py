@@ -51,6 +51,7 @@ WORDINGS: tuple[Wording, ...] = (
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>"
         " | (remember | learn) <thing> as (my | our) <words>"
         " | [you should know [that]] (this | that) [here] is (called | named | known as) [my | our | the] <words>"
+        " | we call <thing> (my | our | the) <words>"
         " | [in (this | our) (house | home | family)] (this | that | it) goes by [the name [of]] [my | our "
         "| the] <words>"
         " | another (name | word) for (this | that | it | <thing>) (is | would be) [my | our | the] <words>"

@@ -28,7 +28,7 @@ def take_place(words: str, household: Household) -> tuple[str, str]:
         where = " ".join(w for w in wanted.split() if w not in (FLOOR, "in"))
         room = _named(where, [(r.name, r.aliases) for r in household.rooms])
         return (f"{room} {FLOOR}", thing) if room else ("", words)
-    place = place_named(wanted, household)
+    place = place_named(wanted, household) or place_named(wanted.partition(" in ")[0], household)
     return (place, thing) if place else ("", words)
 
 

@@ -396,6 +396,12 @@ def test_where_a_thing_is_may_be_said_in_a_sentence_of_its_own(command: str, pla
     assert bench.brain.context.told_place("mug") == place
 
 
+def test_a_question_about_a_shorter_command_forgets_no_place() -> None:
+    bench = asked("Bring me the mug, it's on the desk in the study.", enable_confirmation=False)
+    bench.brain.context.mission.command = "bring me the mug"
+    assert bench.brain.context.told_place("mug") == "desk"
+
+
 def test_a_search_that_is_held_up_on_its_way_looks_elsewhere_first() -> None:
     bench = planned()
     see(bench, 1, found=False)

@@ -76,6 +76,7 @@ LEAST = {
     "42": Least(0.5, 0.74, 18),
     "43": Least(0.6, 0.8, 15),
     "44": Least(0.75, 0.93, 7),
+    "45": Least(0.55, 0.75, 14),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 

@@ -125,6 +125,16 @@ from evaluation.everyday.understanding import understand
         ("-", "I can't find my phone, it must be in the study, could you get it for me?", "fetch(phone)"),
         ("-", "My keys are gone. I think they are on the desk. Could you fetch them?", "fetch(keys)"),
         ("busy:find my purse", "It's alright, it was in my coat all along!", "stop()"),
+        ("-", "Bring me the sponge on the counter in the kitchen.", "goto(counter); fetch(sponge)"),
+        (
+            "-",
+            "I hung the pictures in the bedroom, but the spirit level is still on the floor there. Put it on the desk.",
+            "put(spirit level, desk)",
+        ),
+        ("-", "We're off soon. Get me the sponge, it's on the counter in the kitchen.", "goto(counter); fetch(sponge)"),
+        ("-", "Nip over to the study and see if there's a torch on the desk.", "goto(desk); answer(no)"),
+        ("-", "Please don't call it the vitamin box any longer.", "forget(vitamin box)"),
+        ("busy:go to the bedroom", "Could you wait a second, please?", "stop()"),
         # Speech, how it is to be spoken, and to whom.
         ("-", "Say, nice and loud, that dinner is ready.", "say(dinner is ready)"),
         ("-", "Go to the study and say, quote, the boss is here, unquote.", "goto(study); say(the boss is here)"),

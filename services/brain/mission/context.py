@@ -9,7 +9,10 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Array, Mask, Pose2
+from common.language.contractions import expand
 from common.language.meaning import is_question
+from common.language.normalise import normalise as spelled
+from common.language.place_told import with_whereabouts
 from common.naming.names import normalise
 from common.naming.place_named import FLOOR, place_named, take_place
 from common.plan_rules import known_world
@@ -101,7 +104,8 @@ class Context:
             if a.action == "navigate" and b.action == "find" and b.object == item
         )
         place = place or place_named(normalise(next(gone, "")), home)
-        said = (take_place(normalise(part), home) for part in re.split(r"[.,;?!]", mission.command))
+        told = [with_whereabouts(expand(spelled(t, ",.;?!"))) for t in (mission.command, mission.heard.words)]
+        said = (take_place(normalise(part), home) for part in re.split(r"[.,;?!]", ". ".join(told)))
         beside = (at for at, thing in said if f" {thing}".endswith(f" {normalise(item)}"))
         return place or next((at for at in beside if at != mission.destination(item)), "")
 
@@ -185,6 +189,7 @@ class Context:
             confirmed=command.confirmed,
             question=command.question,
             alternatives=[] if command.confirmed else command.alternatives,
+            words=command.text.strip(),
         )
         mission.command, mission.started = command.text.strip(), self.now
         mission.command_id = command.id

@@ -67,7 +67,8 @@ class Heard(msgspec.Struct):
     """How sure the command is: `confidence` 0 to 1 of speech, `confirmed` by a person, `repeat`: to be said again.
 
     `question`: it is no command, but what a client wants to know from the person. `alternatives`: what else may have
-    been said, until the planner has told which of all it is.
+    been said, until the planner has told which of all it is. `words`: what was said first, of which the command
+    that was asked about may have left something out.
     """
 
     confidence: float = 1.0
@@ -75,6 +76,7 @@ class Heard(msgspec.Struct):
     repeat: bool = False
     question: bool = False
     alternatives: list[m.Transcription] = []
+    words: str = ""
 
 
 class Task(msgspec.Struct):

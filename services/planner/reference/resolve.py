@@ -135,11 +135,13 @@ def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     label = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     if phrase.noun.split()[-1] in LIVING:
         raise Refusal("I pick up neither people nor animals, and I do not look for them")
-    if "the" in phrase.anchor[1:]:
+    spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
+    if "the" in phrase.anchor[1:] and not spots:
         raise Lost(f"I know no {phrase.text}")  # "my books from the desk the one with the vitamins"
     thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
-    spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
     words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation or phrase.which else ""
+    if spots and spots[0].receptacle:  # "on the counter in the kitchen" by the one name that all know
+        words = f"{words.removesuffix(' '.join(phrase.anchor))}{spots[0].name}"
     return Referent(thing, words, spots[0] if spots and not spots[0].home else None)
 
 
