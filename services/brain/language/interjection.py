@@ -139,7 +139,8 @@ def _control(said: str, words: str) -> Interjection | None:
         return Interjection(control, said)  # type: ignore[arg-type]
     if _called_off_in_part(words):
         return Interjection("cancel", said)
-    return Interjection("stop", said) if _ONE_MOMENT.match(without_politeness(words)) else None
+    waits = _ONE_MOMENT.match(words) or _ONE_MOMENT.match(without_politeness(words))
+    return Interjection("stop", said) if waits else None
 
 
 def _called_off_in_part(words: str) -> bool:

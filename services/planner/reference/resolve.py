@@ -141,7 +141,7 @@ def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
     words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation or phrase.which else ""
     if spots and spots[0].receptacle:  # "on the counter in the kitchen" by the one name that all know
-        words = f"{words.removesuffix(' '.join(phrase.anchor))}{spots[0].name}"
+        words = f"{words.removesuffix(' '.join(phrase.anchor))}the {spots[0].name}"
     return Referent(thing, words, spots[0] if spots and not spots[0].home else None)
 
 
