@@ -25,6 +25,16 @@ def phase(robot: Robot) -> str:
     return msgspec.json.decode(robot.bus.last[topics.MANIPULATION_STATUS.key], type=m.ManipulationStatus).phase
 
 
+def with_item_in_hand() -> Robot:
+    robot = Robot("minimal", seed=4, settings=("camera.sensors=ideal",))
+    robot.advance(0.5)
+    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {ITEM}", "id": "t.1"}}'.encode())
+    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
+    assert wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)["status"] == "done"
+    return robot
+
+
 @pytest.mark.timeout(300)
 @pytest.mark.slow
 @pytest.mark.parametrize(("killed_in", "into"), [("grasp", 0.9), ("retract", 0.6)])
@@ -82,12 +92,7 @@ def test_an_arm_whose_placing_failed_is_taken_back_first(
 @pytest.mark.timeout(300)
 @pytest.mark.slow
 def test_what_is_lost_over_its_place_leaves_no_arm_held_out() -> None:
-    robot = Robot("minimal", seed=4, settings=("camera.sensors=ideal",))
-    robot.advance(0.5)
-    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {ITEM}", "id": "t.1"}}'.encode())
-    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
-    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
-    assert wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)["status"] == "done"
+    robot = with_item_in_hand()
     arm = robot.members["manipulation"][0]._robot
     robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.3"}')
     end = robot.now + 20.0
@@ -104,12 +109,7 @@ def test_what_is_lost_over_its_place_leaves_no_arm_held_out() -> None:
 @pytest.mark.timeout(300)
 @pytest.mark.slow
 def test_what_is_held_does_not_creep_out_of_the_hand() -> None:
-    robot = Robot("minimal", seed=4, settings=("camera.sensors=ideal",))
-    robot.advance(0.5)
-    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {ITEM}", "id": "t.1"}}'.encode())
-    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
-    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
-    assert wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)["status"] == "done"
+    robot = with_item_in_hand()
     robot.advance(2.0)
     physics = robot.sim.physics
     held = physics.data.xpos[physics.bodies[ITEM]]
