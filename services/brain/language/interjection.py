@@ -39,9 +39,8 @@ _ONE_MOMENT = re.compile(
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
     r"^(?:(?:i|we) )?(?:have )?(?:just |already )?found (?:it|them|one|him|her)\b(?!.* but\b)|"
-    r"^(?:[^,]+, )?(?:(?:it|they) (?:was|were|is|are)|(?:i|we) had (?:it|them)) "
-    r".*\b(?:all along|(?:all|the whole) time)$|"
-    r"^(?:[^,]+, )?(?:it )?turns out (?:that )?(?:(?:it|they) (?:was|were|is|are)|(?:i|we) (?:had|have) (?:it|them)) |"
+    r"^(?:[^,]+, )?(?:(?:it|they) (?:was|were)|(?:i|we) had (?:it|them)) .*\b(?:all along|the whole time)$|"
+    r"^(?:[^,]+, )?(?:it )?turns out (?:that )?(?:(?:it|they) (?:was|were)|(?:i|we) (?:had|have) (?:it|them)) |"
     r"^(?:cancel|abort|scrap|skip|forget|never mind)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
 )
 """What was asked for is not wanted; there is nothing in its place."""
