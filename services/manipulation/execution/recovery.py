@@ -90,21 +90,19 @@ def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
 
 
 def brought_back(robot: Robot, steps: Steps[str]) -> Steps[str]:
-    """Steps that leave the arm over a surface where they fail: it is taken back before that is said.
+    """Steps that leave an empty hand over a surface where they fail: the arm is taken back before that is said.
 
-    The base drives on after a failure, and an arm that is held out meets furniture on the way.
+    The base drives on after a failure, and an arm that is held out meets furniture on the way. With something in the
+    hand the next attempt goes on from there, which finds ways that the first one did not.
 
     Raises:
-        Failure: as the steps do. An arm that finds no way back stays, with what it holds or what hangs on it.
+        Failure: as the steps do.
     """
     try:
         return (yield from steps)
     except Failure as failure:
-        if failure.code != STUCK:
-            try:
-                yield from retract_grasped(robot, None) if robot.grip.holds() else retract_empty(robot)
-            except Failure as further:
-                robot.io.log.warning("on the way back", code=further.code, detail=further.detail)
+        if failure.code != STUCK and not robot.grip.holds():
+            yield from retract_empty(robot)
         raise
 
 
