@@ -9,11 +9,11 @@ _FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)
 
 
 class ChatError(Exception):
-    """No usable answer: why, in a few words."""
+    """The endpoint gave no usable answer; the message says why in a few words."""
 
 
 class NoAnswer(ChatError):
-    """Nobody was there, or not in time, or an error of the server; others are about what was answered."""
+    """The endpoint could not be reached or reported an error of its own, so that there is no answer to speak of."""
 
 
 class Endpoint(NamedTuple):

@@ -58,12 +58,17 @@ def free_sides(outline: Rectangle, free: Callable[[Array], Mask], rim: float = 0
     return tuple(found)
 
 
+def floor_from_home(plan: FloorPlan) -> tuple[Cells, Mask]:
+    """A grid over the plan, and which of its cells the base reaches from home."""
+    cells = Cells(plan, CELL)
+    return cells, reached(static_distances(cells, plan), CELL, cells.cell(plan.home.x, plan.home.y))
+
+
 def with_sides(plan: P) -> P:
     """The plan; surfaces without `approach` get the sides that are free of walls and furniture."""
     if all(r.approach for r in plan.receptacles):
         return plan
-    cells = Cells(plan, CELL)
-    floor = reached(static_distances(cells, plan), CELL, cells.cell(plan.home.x, plan.home.y))
+    cells, floor = floor_from_home(plan)
 
     def free(spots: Array) -> Mask:
         found: Mask = floor[cells.cells(spots[:, 0], spots[:, 1])]

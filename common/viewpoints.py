@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
-from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan, Place, Receptacle
-from common.free_sides import CELL, reached
+from common.free_sides import floor_from_home
 from common.furniture_tops import seats
 from common.geometry import Array, Mask, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
@@ -45,7 +44,8 @@ ALONG = 0.55
 LOOK_COST = 2.0
 """What a look costs beside the way to it [m of way]; chosen: settling and a picture take as long as 1 m of driving."""
 LEAST_GAIN = 3.0
-"""New points that make a viewpoint worth its way [count]. Chosen: beside fewer enough of a thing shows."""
+"""New points that a view must show to be driven to [count]. Chosen: a thing at one or two points that nobody has seen
+reaches far enough beside them to be seen there."""
 SEE_OVER = 0.3
 """Furniture that ends less than this below the camera hides what is behind it [m]."""
 APART, PATCH = 4, 2
@@ -105,9 +105,7 @@ class Viewpoints:
     def _from_elsewhere(self, views: list[tuple[Pose2, Mask]]) -> list[tuple[Pose2, Mask]]:
         """Poses from any free floor for what shows from no view where the base fits: a passage before a dresser may be
         too narrow for each of them."""
-        cells = Cells(self.plan, CELL)
-        home = self.plan.home
-        floor = reached(static_distances(cells, self.plan), CELL, cells.cell(home.x, home.y))
+        cells, floor = floor_from_home(self.plan)
         hidden = ~np.any(
             [np.zeros(len(self.points), bool)] + [s for p, s in views if floor[cells.cell(*p[:2])]], axis=0
         )

@@ -16,7 +16,7 @@ BEFORE, AFTER = 2.0, 2.0
 
 
 class Span(msgspec.Struct):
-    """A mission's command, and the robot time [s] of its first word and of the first one that is of another."""
+    """A mission's command, and the robot times [s] at which it begins and at which the state tells of another one."""
 
     command: str
     begin: float
@@ -24,7 +24,7 @@ class Span(msgspec.Struct):
 
 
 def missions(recording: Recording) -> dict[str, Span]:
-    """The missions of a recording by id, oldest first; one that was gone on with is one."""
+    """The missions of a recording by id, oldest first; a resumed mission counts once."""
     found: dict[str, Span] = {}
     at = ""
     for row in recording.of(topics.BRAIN_STATE.key):

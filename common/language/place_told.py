@@ -2,14 +2,14 @@
 
 import re
 
-from common.language.exchange import PREPOSITIONS, first_match, verb_first
+from common.language.exchange import PREPOSITIONS, first_match, named, verb_first
 from common.language.politeness import without_lead, without_politeness
 
 _GUESS = (
     r"(?:(?:i|we) (?:think|believe|guess|reckon|suppose|suspect|bet|would (?:say|guess))(?: that)?|"
     r"i am (?:pretty |quite |fairly )?sure(?: that)?|maybe|perhaps|probably|possibly|presumably|most likely)"
 )
-"""How sure somebody is of what they say."""
+"""Words with which somebody says that what follows is a guess."""
 _IT_IS = (
     rf"(?:(?:{_GUESS} )?(?:it|they|he|she) "
     r"(?:is|are|(?:should|must|might|could|ought to|(?:is|are) supposed to) be|lies|stands|lives|sits|hangs)"
@@ -65,9 +65,9 @@ _MISSED = re.compile(
     rf"(?:{_GUESS}|{_IT_IS}) (?P<where>(?P<how>on|in|at|behind|near|by|next to|beside|under|beneath|below) "
     r"(?:the|my|our|a|an) [^,]+?),? (?:so |and |but )?(?P<rest>[^,]*\b(?:it|them)\b[^,]*)$"
 )
-"""Something that is missed, where it perhaps is, and what is to be done about it."""
+"""A thing that somebody misses, the place where it may be, and a command that points at it by a pronoun."""
 _HIDDEN = frozenset({"under", "beneath", "below"})
-"""How a thing lies where no camera sees it from where the robot goes."""
+"""Prepositions of a place that hides a thing from the cameras, so that the place is no help in the search."""
 _SENTENCE = re.compile(r"[^.?!;]+(?:[.?!;]+\s*|$)")
 
 
@@ -89,9 +89,13 @@ def with_what_is_missed(text: str) -> str:
         return text
     thing = found["thing"] or found["lost"]
     sought = re.search(r"\b(?:find|look|search|check|see|where)\b", found["rest"])
-    where = found["where"] if sought else re.sub(r"^(?:on|in|at) ", "from ", found["where"])
-    named = thing if found["how"] in _HIDDEN else f"{thing} {where}"
-    return re.sub(r"\b(?:it|them)\b", lambda _: named, found["rest"], count=1)
+    where = found["where"] if sought else from_there(found["where"])
+    return named(found["rest"], thing if found["how"] in _HIDDEN else f"{thing} {where}")
+
+
+def from_there(where: str) -> str:
+    """`on the desk` as where something is to be taken from: `from the desk`."""
+    return re.sub(r"^(?:on|in|at) ", "from ", where)
 
 
 def _with_place(sentence: str) -> str:

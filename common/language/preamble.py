@@ -4,6 +4,7 @@ import re
 
 from common.language.exchange import PREPOSITIONS, IsPlace, first_match, named, verb_first
 from common.language.normalise import DETERMINERS
+from common.language.place_told import from_there
 from common.language.politeness import without_politeness
 
 _THING = r"(?:the|that|this|my|our|your|his|her) (?:[\w']+ ){0,4}?[\w']+"
@@ -30,7 +31,7 @@ _STILL_THERE = re.compile(
     r"(?:still |yet |just )?(?:lying |standing )?"
     r"(?P<where>(?:on|in|at|under|behind) (?:the|my|our) [^,.;!?]+?)[.;!] (?:so |and )?(?P<request>[^.;!?]+)[.!?]*$"
 )
-"""What somebody tells of, in which something has stayed somewhere, and what is asked for of it."""
+"""A story that ends with where a thing still is, and a command that points at the thing by a pronoun."""
 _ROOM_TOLD = re.compile(r"\b(?:in|into|from|through) (?P<room>(?:the|my|our) \w+(?: room)?)\b")
 _BROUGHT = re.compile(
     r"^(?:please )?(?:bring|fetch|get|carry) (?:it|them)(?: back)?"
@@ -94,7 +95,7 @@ def with_preamble(text: str, is_place: IsPlace) -> str:
     if (told := _STILL_THERE.match(text)) and _HANDLED.match(asked := without_politeness(told["request"])):
         rooms = _ROOM_TOLD.findall(told["tale"])
         where = re.sub(r"\bin there$", f"in {rooms[-1]}" if rooms else "", told["where"]).strip()
-        return named(asked, f"{told['thing']} {re.sub(r'^(?:on|in|at) ', 'from ', where)}")
+        return named(asked, f"{told['thing']} {from_there(where)}")
     if asker := first_match(_ASKER_AT, text):
         known = is_place(tuple(w for w in asker["where"].split()[1:] if w not in DETERMINERS))
         if known and PREPOSITIONS.isdisjoint(asker["thing"].split()):

@@ -11,7 +11,7 @@ _PREPOSITION = (
     r"(?:left|right))\b)"
 )
 _LOOKS = rf"(?:{'|'.join(sorted(COLOURS))}|small|big|little|large|tall|other)\b"
-"""How a thing looks, which goes with the noun that another thing of its kind has."""
+"""A word of colour or size: the name of a thing that begins with one may have its noun from a thing before."""
 _CARDINALS = tuple(enumerate(("one", "two", "three", "four", "five", "six"), 1))
 SHORTER = tuple(
     (re.compile(words), plain)

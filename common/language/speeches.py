@@ -40,7 +40,7 @@ _OF_YOU = {"is": "are", "has": "have", "wants": "want", "needs": "need", "likes"
 _NAMELESS = re.compile(r"(?:the|my|our|them|him|her|every\w+|people)\b")
 """How somebody is named without a name to call them by."""
 _QUOTED = re.compile(r"(?<=\bsay),? (?:open )?quotes?,? (?P<said>.+?)(?:,? (?:unquote|(?:close|end) quotes?)\b|$)")
-"""What is to be said between marks that are spoken out."""
+"""What is to be said between spoken quotation marks: `say quote dinner is ready unquote`."""
 _REPEATED = re.compile(r"^repeat after me[,:]? (?:and )?")
 _THEIRS = re.compile(r"\b(?:their|his|her)\b")
 LONG_SPEECH = re.compile(

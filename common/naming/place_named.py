@@ -40,7 +40,7 @@ def place_named(words: str, household: Household) -> str:
 
 
 def is_at(o: WorldObject | PossibleObject, place: str, household: Household) -> bool:
-    """An object stands on the receptacle or in the room of that name, or on the floor, there or anywhere."""
+    """Whether an object is at a place as `take_place` names it: a receptacle, a room, the floor, or that of a room."""
     if o.on == place or (place == FLOOR and not o.on):
         return True
     room = household.room_at(o.position[0], o.position[1])

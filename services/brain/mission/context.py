@@ -103,11 +103,13 @@ class Context:
             for a, b in pairwise(mission.planning.steps)
             if a.action == "navigate" and b.action == "find" and b.object == item
         )
-        place = place or place_named(normalise(next(gone, "")), home)
-        told = [with_whereabouts(expand(spelled(t, ",.;?!"))) for t in (mission.command, mission.heard.words)]
-        said = (take_place(normalise(part), home) for part in re.split(r"[.,;?!]", ". ".join(told)))
+        if place := place or place_named(normalise(next(gone, "")), home):
+            return place
+        words = dict.fromkeys((mission.command, mission.heard.words))
+        told = ". ".join(with_whereabouts(expand(spelled(text, ",.;?!"))) for text in words)
+        said = (take_place(normalise(part), home) for part in re.split(r"[.,;?!]", told))
         beside = (at for at, thing in said if f" {thing}".endswith(f" {normalise(item)}"))
-        return place or next((at for at in beside if at != mission.destination(item)), "")
+        return next((at for at in beside if at != mission.destination(item)), "")
 
     def told_points(self, item: str) -> Mask:
         """Which of the viewpoints' points (p,) are where the person said that the item is."""

@@ -62,7 +62,8 @@ class LocateObject(SendGoal):
         search.options = pose.candidates
         search.perhaps = [p for p in pose.perhaps if p.id not in search.rejected]
         self._note_near_looks([*pose.unsure, *pose.unlikely])
-        near = pose.unsure if pose.candidates else [n for n in pose.unsure if self._told(n)]
+        place = "" if pose.candidates else self.ctx.told_place(self._item)
+        near = [n for n in pose.unsure if self._may_be_at(place, n)]
         later = [n for n in pose.unsure if n not in near]
         search.unsure, search.unlikely = self._left(near), self._left([*later, *pose.unlikely])
         if not pose.found:
@@ -84,10 +85,10 @@ class LocateObject(SendGoal):
                 if shows_another_side(angle, self.ctx.mission.search.directions(o)):
                     self.ctx.mission.search.looked_near(o, [angle])
 
-    def _told(self, label: str) -> bool:
-        """Whether the object of that label is where the item was said to be, if anybody has said where."""
-        place, known = self.ctx.told_place(self._item), self.ctx.known_object(label)
-        return not place or known is None or is_at(known, place, self.ctx.io.household)
+    def _may_be_at(self, place: str, label: str) -> bool:
+        """Whether the object of that label is at a place, "" for anywhere, or nothing is known of where it is."""
+        known = self.ctx.known_object(label) if place else None
+        return known is None or is_at(known, place, self.ctx.io.household)
 
     def _left(self, labels: list[str]) -> list[str]:
         """Those of the labels whose objects were not looked at from nearer from all sides."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from common.floor_grid import Cells, static_distances
 from common.floor_plan import Room
-from common.free_sides import CELL, reached
+from common.free_sides import floor_from_home
 from common.geometry import Mask, Pose2
 from common.viewpoints import LIFT, REACH, Viewpoints
 
@@ -32,8 +32,7 @@ class FloorViews(Viewpoints):
 
     @cached_property
     def _views(self) -> list[tuple[Pose2, Mask]]:
-        cells, home = Cells(self.plan, CELL), self.plan.home
-        free = reached(static_distances(cells, self.plan), CELL, cells.cell(home.x, home.y))
+        cells, free = floor_from_home(self.plan)
         spots = cells.centres()[::APART, ::APART][free[::APART, ::APART]]
         near = [(x, y) for x, y in spots.tolist() if (np.hypot(*(self.points[:, :2] - (x, y)).T) < REACH).any()]
         turns = [math.remainder(math.tau * k / HEADINGS, math.tau) for k in range(HEADINGS)]

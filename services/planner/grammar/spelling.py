@@ -56,8 +56,8 @@ def renamed(words: Sequence[str], names: Iterable[str], colours: Container[str],
     """
     sounds = {name: _sound(name.replace(" ", "")) for name in names}
     bare = [w.strip(MARKS) for w in words]
-    begins = [max((at + 1 for at in range(b - 1) if words[at] != bare[at]), default=0) for b in range(len(words) + 1)]
-    runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(begins[b], b - LONGEST_RUN), b)]
+    runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(0, b - LONGEST_RUN), b)]
+    runs = [(a, b) for a, b in runs if list(words[a : b - 1]) == bare[a : b - 1]]
     for begin, end in sorted(runs, key=lambda run: run[0] - run[1]):
         said = _sound("".join(bare[begin:end]))
         allowed = len(said) // SOUNDS_PER_SLIP
