@@ -8,6 +8,7 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Array
 from services.navigation.config import NavigationConfig
+from services.navigation.motion.arm_load import ArmLoad
 from services.navigation.motion.contacts import UnseenObstacles
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
@@ -26,7 +27,7 @@ class MapUpkeep:
         if self._changes.load(self.map.obstacles.changes):
             self.map.obstacles.remember(0.0)
         self.contacts = UnseenObstacles(self.map, config.footprint_radius)
-        self._low = LowThings(self.map)
+        self._low, self._arm = LowThings(self.map), ArmLoad()
         self._second = -1
 
     def see(self, unmapped: Array, now: float) -> None:
@@ -34,7 +35,9 @@ class MapUpkeep:
         self._low.see(unmapped, now)
 
     def step(self, objects: Sequence[m.WorldObject], now: float) -> None:
-        """Update the costmap once a second; `objects` are those of perception's newest report."""
+        """Update the costmap once a second; `objects` are those of perception's newest report. In each step: whether
+        the arm has run into something."""
+        self.contacts.felt = self._arm.presses(self._io.latest(topics.JOINT_STATES))
         if int(now) == self._second:
             return
         self._second = int(now)

@@ -11,9 +11,11 @@ from common.bus.memory import MemoryIo
 from common.floor_plan import Box, FloorPlan, Place, Room, Wall
 from common.geometry import Rectangle
 from common.household import Household, load_household, mapped
+from common.robot.joints import ARM
 from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import rectangles
+from services.navigation.motion.arm_load import PRESSING, ArmLoad
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.contacts import STOPPED
 from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
@@ -75,6 +77,39 @@ def test_a_pane_of_glass_is_met_and_gone_round() -> None:
     assert all(Rectangle(*KITCHEN_DOOR).distance(x, y) < 0.1 for x, y in places)
     flat.ask("return_to_start", "a.2")
     assert flat.finish(120.0).status == "arrived" and not flat.feedback().met, "remembered"
+
+
+@pytest.mark.parametrize(("torque", "met"), [(3.0, False), (PRESSING + 1.0, True)])
+def test_what_the_arm_presses_on_is_backed_off_at_once(torque: float, met: bool) -> None:
+    flat, usual = Flat(), np.array([0.0, 5.0, -20.0, 3.0, 8.0, 0.0, 1.0])
+    flat.ask("goto kitchen")
+    edge = lowest = 1.0
+    while flat.status().status == "navigating" and flat.now < 60.0:
+        pressed = flat.true[0] > edge and not flat.feedback().met
+        efforts = usual + np.eye(len(ARM))[2] * torque * pressed
+        still, effort = [0.3] * 7, efforts.tolist()
+        told = m.JointStates(t=flat.now, name=list(ARM), position=still, velocity=still, effort=effort)
+        flat.bus.send(topics.JOINT_STATES, told)
+        flat.step()
+        if "HELD_UP" in doings(flat):
+            lowest = min(lowest, flat.true[0])
+        elif met:
+            assert flat.true[0] < edge + 0.1, "it drives on"
+    assert flat.status().status == "arrived", "around it"
+    assert ("HELD_UP" in doings(flat)) == met and (lowest < edge - 0.1) == met
+
+
+def test_an_arm_that_was_moved_or_carries_more_than_before_presses_on_nothing() -> None:
+    load, torques = ArmLoad(), np.zeros(7)
+
+    def presses(joint: float, torque: float) -> bool:
+        position, efforts = [joint] * 7, (torques + torque).tolist()
+        return load.presses(m.JointStates(t=0.0, name=list(ARM), position=position, velocity=[0.0] * 7, effort=efforts))
+
+    assert not load.presses(None) and not presses(0.0, 0.0)
+    assert not presses(0.5, 2 * PRESSING), "moved by its motors"
+    assert not presses(0.5, 2 * PRESSING) and presses(0.5, 0.5 * PRESSING)
+    assert not all(presses(0.5, 0.5 * PRESSING) for _ in range(1000)), "for good, as a bag that was hung on it"
 
 
 def test_silent_sensors_are_no_pane_of_glass() -> None:

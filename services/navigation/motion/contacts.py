@@ -1,4 +1,5 @@
-"""Detection of obstacles that no sensor sees, such as a pane of glass: the base is sent on and does not move."""
+"""Detection of obstacles that no sensor sees, such as a pane of glass: the base is sent on and does not move, or the
+arm presses on them."""
 
 import math
 from collections import deque
@@ -30,7 +31,10 @@ it is gone."""
 
 
 class UnseenObstacles:
-    """Places [map] where something unseen has held the base up, kept in the costmap for some time."""
+    """Places [map] where something unseen has held the base up, kept in the costmap for some time.
+
+    `felt`: the arm presses on something.
+    """
 
     def __init__(self, costmap: Costmap, footprint: float) -> None:
         self._map, self._ahead = costmap, footprint + costmap.resolution / 2
@@ -38,6 +42,7 @@ class UnseenObstacles:
         self._from: Pose2 = (math.inf, 0.0, 0.0)
         self._since = self._at = -math.inf
         self._trail: deque[tuple[float, Pose2]] = deque()
+        self.felt = False
 
     def check(self, pose: Pose2, target: Pose2, now: float) -> Point | None:
         """The place [map] of what holds the base up, else None; call in each step with a free way to `target` [map]."""
@@ -50,12 +55,13 @@ class UnseenObstacles:
             self._from, self._since = pose, now
         self._at = now
         self._trail.append((now, pose))
-        if now - self._since < PUSHING and not self._stopped_short(target, now):
+        if not (self.felt or now - self._since >= PUSHING or self._stopped_short(target, now)):
             return None
         self._trail.clear()
         self._since = now
-        share = self._ahead / way
-        point = pose[0] + (target[0] - pose[0]) * share, pose[1] + (target[1] - pose[1]) * share
+        # One that turns on the spot has met it with the arm, which is before it.
+        onward = math.atan2(target[1] - pose[1], target[0] - pose[0]) if way >= AWAY else pose[2]
+        point = pose[0] + self._ahead * math.cos(onward), pose[1] + self._ahead * math.sin(onward)
         self._met.append((point, now))
         self._tell()
         return point
