@@ -44,9 +44,10 @@ class ContactLog:
         self._names = [_name(model, g) for g in range(model.ngeom)]
         self._parts = [model.body(int(b)).name for b in body]
         self._views: dict[int, NDArray[np.int32]] = {}
-        self._read: dict[bytes, tuple[tuple[int, Pair], ...]] = {}
+        self._read: dict[bytes, tuple[bool, tuple[tuple[int, Pair], ...]]] = {}
         self._force = np.zeros(6)
         self._ids = itertools.count()
+        self.grips = False
         self.forget()
 
     def forget(self) -> None:
@@ -62,6 +63,12 @@ class ContactLog:
 
     def step(self, data: Any, now: float) -> None:
         """Log the contacts of the physics step that ends at `now` [s], while `data` has them."""
+        pairs = self.look(data)
+        if pairs:
+            self._note(data, pairs, now)
+
+    def look(self, data: Any) -> tuple[tuple[int, Pair], ...]:
+        """Index and pair of the contacts that count; sets `grips`, True while an object touches both pads."""
         count = data.ncon
         view = self._views.get(count)
         if view is None:
@@ -69,16 +76,16 @@ class ContactLog:
             # array up anew takes longer than all that follows.
             view = self._views[count] = data.contact.geom
         pattern = view.tobytes()
-        pairs = self._read.get(pattern)
-        if pairs is None:
+        read = self._read.get(pattern)
+        if read is None:
             if len(self._read) == PATTERNS:
                 self._read.clear()
-            pairs = self._read[pattern] = self._classify(view)
-        if pairs:
-            self._note(data, pairs, now)
+            read = self._read[pattern] = self._classify(view)
+        self.grips, pairs = read
+        return pairs
 
-    def _classify(self, geoms: NDArray[np.int32]) -> tuple[tuple[int, Pair], ...]:
-        """Index and pair of those of the touching geoms (n, 2) that count."""
+    def _classify(self, geoms: NDArray[np.int32]) -> tuple[bool, tuple[tuple[int, Pair], ...]]:
+        """Whether both pads touch one object, and index and pair of those of the touching geoms (n, 2) that count."""
         rows: list[tuple[int, int]] = [(int(a), int(b)) for a, b in geoms]
         left, right = (
             {self._object[other] for a, b in rows for geom, other in ((a, b), (b, a)) if geom in pad}
@@ -90,7 +97,7 @@ class ContactLog:
             pair = self._pair(a, b, held) or self._pair(b, a, held)
             if pair is not None:
                 found.append((index, pair))
-        return tuple(found)
+        return bool(held), tuple(found)
 
     def _pair(self, part: int, thing: int, held: set[str]) -> Pair | None:
         """The pair to log for geom `part` of the robot or a held object on geom `thing`; None if it does not count."""

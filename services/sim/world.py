@@ -17,9 +17,6 @@ _GLASS = "0.75 0.85 0.88 0.2"
 CCD_TOLERANCE = 1e-8
 """Tolerance of the search for contacts [m]. With MuJoCo's own, 1e-6, one contact in 16,000 of a pad with a cylinder
 that it hardly touches is found on the far side of the pad, 8 mm deep, and what is held is struck with 200 N."""
-NOSLIP = 3
-"""Iterations of the pass that takes the creep out of friction [count]. Chosen: without it what the hand holds, with ten
-times the force that its weight asks for, sinks by 0.5 mm/s and is lost on the way; with one it still turns slowly."""
 
 
 def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0, group: int = 0) -> str:
@@ -86,7 +83,7 @@ def world_mjcf(
     return f"""<mujoco model="{scene.name}">
 <compiler angle="radian" autolimits="true"/>
 <option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
-  ccd_tolerance="{CCD_TOLERANCE}" noslip_iterations="{NOSLIP}"/>
+  ccd_tolerance="{CCD_TOLERANCE}"/>
 <statistic center="{center[0]} {center[1]} 0.5" extent="6"/>
 <visual>
   <global offwidth="1280" offheight="960"/>

@@ -15,6 +15,7 @@ from services.manipulation.execution import recovery
 from services.manipulation.execution.recovery import at_carry
 from services.manipulation.execution.robot import Failure, Steps
 from services.manipulation.execution.robot import Robot as ExecutingRobot
+from services.sim.physics import NOSLIP
 from tests.mission import Robot
 from tests.unit.test_manipulation_service import wait
 
@@ -115,4 +116,5 @@ def test_what_is_held_does_not_creep_out_of_the_hand() -> None:
     before = held.copy()
     robot.advance(30.0)
     assert np.abs(held - before).max() < 0.0005
+    assert physics.model.opt.noslip_iterations == NOSLIP
     robot.close()

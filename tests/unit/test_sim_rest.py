@@ -65,3 +65,10 @@ def test_what_changes_the_model_is_felt_within_a_tenth_of_a_second(resting: Phys
         assert worked_out(resting, 3) == pytest.approx(1.0)
     finally:
         resting.model.opt.gravity[:] = gravity
+
+
+def test_only_what_is_held_is_worth_the_pass_against_creep(resting: Physics) -> None:
+    shove(resting)
+    worked_out(resting, 3)
+    assert resting.data.ncon > 0
+    assert resting.model.opt.noslip_iterations == 0
