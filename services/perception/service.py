@@ -4,6 +4,7 @@ import math
 import pkgutil
 
 from common import topics
+from common.approach import FOOTPRINT
 from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.runtime import StartError
@@ -13,7 +14,7 @@ from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
 from services.perception.naming.naming import Naming
 from services.perception.queries import Queries
-from services.perception.tracking.association import refines
+from services.perception.tracking.association import lies_on_base, refines
 from services.perception.tracking.beliefs import Beliefs
 from services.perception.views.pictures import Pictures
 from services.perception.views.self_filter import RobotModel
@@ -25,6 +26,8 @@ HAND_RANGE = 0.35
 of them."""
 CLEAR = ("", "start", "look")
 """Phases of manipulation in which the arm is retracted."""
+CLOSES = "grasp"
+"""The phase in which the fingers close."""
 
 
 class PerceptionService:
@@ -47,6 +50,7 @@ class PerceptionService:
         self._queries = Queries(config, io, self._state, self._naming, self._beliefs, self._pictures)
         self._monitor = CalibrationMonitor()
         self._hand_at: tuple[float, float, float] | None = None
+        self._was = ""
         self._looked_for_name = 0
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
 
@@ -78,8 +82,13 @@ class PerceptionService:
             return
         robot = state.robot(now)
         if robot is not None:
-            self._hand_at = robot.hand(base)
-            carried = self._beliefs.tracker.carry(self._hand_at, state.holds(robot), now, bool(self._phase()))
+            before, self._hand_at = self._hand_at, robot.hand(base)
+            tracker, holds = self._beliefs.tracker, state.holds(robot)
+            was, self._was = self._was, self._phase()
+            if was == CLOSES != self._was and not holds:
+                tracker.missed(before or self._hand_at)
+            over_base = math.dist(self._hand_at[:2], base[:2]) < FOOTPRINT
+            carried = tracker.carry(self._hand_at, holds, now, bool(self._was) or over_base)
             if carried or io.household is not self._told:
                 self._told = io.household
                 self._beliefs.publish(now)
@@ -114,9 +123,9 @@ class PerceptionService:
 
     def _track_objects(self, view: View, detections: list[Detection], now: float) -> None:
         tracker = self._beliefs.tracker
-        detections = self._trusted(view, detections)
-        seen = tracker.update(view, detections, view.t)
         base = self._state.base_at(view.t)
+        detections = self._trusted(view, detections, base)
+        seen = tracker.update(view, detections, view.t)
         if base is not None:
             self._naming.see(view, tracker.objects(), now, base)
             for camera, why in self._monitor.see(view, detections, base).items():
@@ -125,8 +134,10 @@ class PerceptionService:
         self._beliefs.publish(now, bool(seen))
         self._queries.see(view, seen)
 
-    def _trusted(self, view: View, detections: list[Detection]) -> list[Detection]:
+    def _trusted(self, view: View, detections: list[Detection], base: Pose2 | None) -> list[Detection]:
         """The detections that may be believed: half hidden by the hand, an object looks like another."""
+        if base is not None:
+            detections = [d for d in detections if not lies_on_base(d, base)]
         if view.camera == "wrist":
             return [d for d in detections if not d.known or refines(d, self._beliefs.published)]
         if self._phase() not in CLEAR and self._hand_at is not None:

@@ -23,8 +23,9 @@ PLACE = np.array([-0.5, -1.2, 1.3])
 RUG = Box(name="rug", center=(PLACE[0] + 0.35, PLACE[1] + 1.1, 0.008), size=(0.5, 0.6, 0.016))
 
 
-def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = (), ahead: float = 1.2) -> View:
-    """The floor, and `ahead` [m] on it a cube of `box` [m], as a camera sees them that is off by its mount's error."""
+def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = (), ahead: float = 1.2, high: float = 0.0) -> View:
+    """The floor, and `ahead` [m] on it a cube of `box` [m], or only so `high`, as a camera sees them that is off by its
+    mount's error."""
     camera = StereoCamera(seed)
     turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
     u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
@@ -35,7 +36,7 @@ def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = (), ahead: float 
         at = rays[..., :2] * top[..., None] + PLACE[:2] - rug.center[:2]
         on_top = (np.abs(at) < np.array(rug.size[:2]) / 2).all(axis=-1)
         depth[on_top] = top[on_top]
-    top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
+    top = ((high or box) - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
     on_top = np.abs(rays[..., :2] * top[..., None] - np.array([ahead, 0.0])).max(axis=-1) < box / 2
     depth[on_top] = top[on_top]
     taken = camera.expose(np.full((HEIGHT, WIDTH, 3), 120, np.uint8), depth, FOCAL, seed)
@@ -67,6 +68,21 @@ def test_what_lies_before_furniture_is_seen_whole(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_rug_that_no_map_has_is_floor(seed: int) -> None:
     assert segments(floor(seed, rugs=(RUG,)), SCENE, 3.5) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_stands_beside_a_flat_thing_is_seen(seed: int) -> None:
+    """A board as wide as a rug is taken for one, and a part of what stands before it seemed to be on it."""
+    board = Box(name="board", center=(PLACE[0] + 1.375, PLACE[1], 0.006), size=(0.26, 0.24, 0.012))
+    (found,) = segments(floor(seed, 0.08, (board,)), SCENE, 3.5)
+    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_stands_out_of_the_noise_in_part_does_not_go_on_in_the_rest(seed: int) -> None:
+    """The rest of a thin thing, and the noise around it, are the floor's."""
+    (found,) = segments(floor(seed, 0.22, ahead=2.35, high=0.023), SCENE, 3.5)
+    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 2.35, PLACE[1])) < 0.08
 
 
 @pytest.mark.parametrize("thick", [0.006, 0.012, 0.019])

@@ -11,6 +11,7 @@ from common.household import load_household
 from common.messages import WorldObject
 from services.perception.detect import Detection
 from services.perception.grounding import ground
+from services.perception.tracking.association import lies_on_base
 from services.perception.tracking.object_tracker import ObjectTracker
 from services.perception.views.view import View
 
@@ -189,6 +190,24 @@ def test_what_falls_before_the_base_is_nowhere_until_it_is_seen() -> None:
     assert tracker.objects() == []
     tracker.update(empty_view(), [detection("red mug", 0.6, 0.3)], 3.0)
     assert [o.position[:2] for o in tracker.objects()] == [(0.6, 0.3)]
+
+
+@pytest.mark.parametrize(("x", "on", "carried"), [(3.2, "", True), (3.5, "", False), (3.2, "delivery tray", False)])
+def test_what_seems_to_be_on_the_floor_where_the_base_stands_lies_on_it(x: float, on: str, carried: bool) -> None:
+    assert lies_on_base(replace(detection("red mug", x, 1.0), on=on), (3.0, 1.0, 0.5)) is carried
+
+
+def test_after_fingers_that_closed_on_nothing_any_look_says_better_where_a_thing_is() -> None:
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0, distance=0.3)], 0.0)
+    poorer = [detection("red mug", 1.14, 0.0, distance=1.5)]
+    tracker.update(empty_view(far=1.1), poorer, 1.0)
+    tracker.missed((1.2, 0.5, 0.82))
+    tracker.update(empty_view(far=1.1), poorer, 2.0)
+    assert [o.position[0] for o in tracker.objects()] == [1.2], "the hand was elsewhere"
+    tracker.missed((1.2, 0.0, 0.82))
+    tracker.update(empty_view(far=1.1), poorer, 3.0)
+    assert [o.position[0] for o in tracker.objects()] == [1.14]
 
 
 def test_a_closed_hand_far_from_everything_holds_nothing_known() -> None:

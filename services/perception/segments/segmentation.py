@@ -63,6 +63,9 @@ bumps, of which one in a thousand is beyond three."""
 ONE_DEVIATION = 68.3
 """Percentile of the distances from a plane that is one standard deviation of normal noise."""
 
+Layer = tuple[Surface, Cloud, Cloud]
+"""The floor or a rug, the pixels that stand up from it, and all over it."""
+
 
 def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | None = None) -> list[Segment]:
     """The objects that stand on the surfaces of the floor plan. `robot` marks the pixels that show the robot itself."""
@@ -81,8 +84,12 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
         found += _on(view, surface, over.outside(on_it), near, own, dark)
-    for surface, over, ground in _above_floor(view, usable):
-        found += _on(view, surface, over.outside(near.boxes), near, own, dark, ground=ground)
+    above = _above_floor(view, usable)
+    looked_at = np.zeros(view.shape, bool)
+    for _, _, ground in above:
+        looked_at.ravel()[ground.outside(near.boxes).pixels] = True
+    for surface, over, ground in above:
+        found += _on(view, surface, over.outside(near.boxes), near, own, dark, ground=ground, looked_at=looked_at)
     return found
 
 
@@ -113,15 +120,33 @@ def _stands_on(segment: Segment, r: Receptacle) -> bool:
     return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
 
-def _above_floor(view: View, usable: Mask) -> list[tuple[Surface, Cloud, Cloud]]:
-    """The floor and the rugs on it, the usable pixels that stand up from each by more than noise, and all over it."""
+def _above_floor(view: View, usable: Mask) -> list[Layer]:
+    """The floor and the rugs on it, the usable pixels that stand up from each by more than noise, and all over it.
+
+    What stands across the edge of a rug is of the layer on which most of it stands.
+    """
     found = []
     for height, cloud in layers(
         _between(view, usable & (view.depth < FLOOR_RANGE), -SEARCH, MAX_HEIGHT, view.everywhere)
     ):
         noise = DEVIATIONS * DEPTH_NOISE * float(view.position[2]) * view.depth.ravel()[cloud.pixels]
         found.append((Surface("", height), cloud.kept(cloud.z > height + np.maximum(noise, CLEARANCE)), cloud))
-    return found
+    return found if len(found) < 2 else _undivided(view, found)
+
+
+def _undivided(view: View, found: list[Layer]) -> list[Layer]:
+    """The layers with each connected part of what stands up from them in one."""
+    layer = np.full(view.shape, -1)
+    for n, (_, over, _) in enumerate(found):
+        layer.ravel()[over.pixels] = n
+    rows, columns = np.nonzero(layer >= 0)
+    for part in between_jumps(view, rows, columns, MIN_PIXELS // 3) if len(rows) else ():
+        layer[part] = np.bincount(layer[part]).argmax()
+    every = found[0][1]
+    for _, over, _ in found[1:]:
+        every = every.joined(over)
+    own = layer.ravel()[every.pixels]
+    return [(surface, every.kept(own == n), ground) for n, (surface, _, ground) in enumerate(found)]
 
 
 def _between(view: View, usable: Mask, low: float, high: float, window: Window) -> Cloud:
@@ -146,9 +171,11 @@ def _on(
     dark: Blobs | None,
     beyond: Cloud | None = None,
     ground: Cloud | None = None,
+    looked_at: Mask | None = None,
 ) -> list[Segment]:
     """Pieces above one surface, whose plane is measured where enough of it is visible; of the pixels `beyond` its edges
-    those above its front. `ground`: all pixels over it, where `cloud` is what stands up from it."""
+    those above its front. `ground`: all pixels over it, where `cloud` is what stands up from it, and `looked_at` (h, w)
+    all over it and other layers."""
     plane, least, rough = _plane(view, cloud, expected)
     if beyond is not None:
         front = plane[0] * beyond.x + plane[1] * beyond.y + plane[2]
@@ -159,6 +186,8 @@ def _on(
     by_walls.ravel()[cloud.pixels] = True
     cloud = cloud.outside(near.walls)
     by_walls.ravel()[cloud.pixels] = False
+    over_it = np.zeros(view.shape, bool) if looked_at is None else looked_at.copy()
+    over_it.ravel()[cloud.pixels] = True
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
     noise = DEVIATIONS * rough * _noise(view, cloud, expected)
     over = (cloud.z > height + np.maximum(noise, least)) & (cloud.z < height + MAX_HEIGHT)
@@ -173,7 +202,6 @@ def _on(
         return outlined
     rows, columns = np.unravel_index(above, view.shape)
     cut = between_jumps(view, rows, columns, MIN_PIXELS // 3)
-    over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
     parts = [_to_its_top(view, p, own) for p in joined(view, expected.name, plane, cut, own, dark)]
     left = [p for p in parts if len(p.rows) >= MIN_PIXELS and _is_thing(p)]

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from common.approach import FOOTPRINT
+from common.geometry import Pose2
 from common.kinds import kind_of
 from common.messages import WorldObject
 from services.perception.detection import Detection
@@ -46,6 +48,11 @@ def refines(d: Detection, believed: Sequence[WorldObject]) -> bool:
     near = [o for o in believed if math.dist(o.position, d.position) < REFINED and not o.held]
     whole = kind_of(d.kind).straight or (d.whole and d.confidence >= SURE)
     return whole and any(o.label == d.label for o in near)
+
+
+def lies_on_base(d: Detection, base: Pose2) -> bool:
+    """What seems to be on the floor where the robot's base stands lies on that, and goes where it goes."""
+    return not d.on and math.dist(d.position[:2], base[:2]) < FOOTPRINT
 
 
 def separation(d: Detection, track: Track) -> float | None:

@@ -125,8 +125,8 @@ class ObjectTracker:
     def carry(self, hand: Vec3, holding: bool, now: float, working: bool = False) -> bool:
         """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was.
 
-        What falls while the arm rests lies behind on the base's way, where the hand was. While the arm is `working` the
-        base stands there itself: what falls then is nowhere until it is seen again.
+        What falls while the arm rests lies behind on the base's way, where the hand was. Where the base stands itself,
+        while the arm is `working` or the hand over it, what falls is nowhere until it is seen again.
         """
         held = next((t for t in self._tracks if t.held), None)
         if holding and held is None:
@@ -153,6 +153,13 @@ class ObjectTracker:
         held.yaw_seen = False
         held.looks.set_down()
         return True
+
+    def missed(self, hand: Vec3) -> None:
+        """The fingers closed there and hold nothing: any look says better where the object is than those before it."""
+        near = [(math.dist(t.position, hand), t.id, t) for t in self._tracks if not t.held]
+        if near and min(near)[0] < HELD_RANGE:
+            track = min(near)[2]
+            track.weight = track.best = 0.0
 
     def objects(self, since: float = -math.inf) -> list[WorldObject]:
         """What is believed, one place for each object of the household, the newest that was sure.
