@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Collection, Sequence
+from functools import cache
 
 from common.messages import ActionPlan, PlanStep, Transcription
 from services.planner.plan_builder import NOT_UNDERSTOOD
@@ -25,23 +26,22 @@ def chosen(heard: str, alternatives: Sequence[Transcription], plan: Planner, kno
     `known`: labels of things that the household has or that were seen. Another transcription counts only where a plan
     can be made for it, and it is never acted on: it is a suggestion. What was heard first sounds as likely as any
     other, for whoever listened chose it, and is a suggestion itself where it is hardly likelier.
+    A plan takes up to a second for a long sentence: none is made that cannot change the outcome, and none twice.
     """
+    plan = cache(plan)
     first = plan(heard)
     scores = [one.score for one in alternatives]
     worth = math.log(max(1.0 - sum(scores), *scores, LEAST)) - cost(first, known)
-    likely = [one for one in alternatives if math.log(max(one.score, LEAST)) > worth - MARGIN]
-    found = [(one, plan(one.text)) for one in likely]
-    done = _done(first, plan)
-    rivals = [(one, other) for one, other in found if (steps := _done(other, plan)) and steps != done]
-    if not rivals:
-        return first
-    values = [math.log(max(one.score, LEAST)) - cost(other, known) for one, other in rivals]
-    best = max(range(len(rivals)), key=values.__getitem__)
-    if values[best] > worth:
-        text = rivals[best][0].text
-    elif values[best] > worth - MARGIN:
-        text = heard
-    else:
+    text, best = "", worth - MARGIN
+    for one in sorted(alternatives, key=lambda one: -one.score):
+        likely = math.log(max(one.score, LEAST))
+        if likely <= best:
+            break  # even a plan for known things would be worth no more
+        other = plan(one.text)
+        value = likely - cost(other, known)
+        if value > best and (steps := _done(other, plan)) and steps != _done(first, plan):
+            text, best = (one.text, value) if value > worth else (heard, worth)
+    if not text:
         return first
     return ActionPlan(request_id=first.request_id, steps=[], source=first.source, detail=DOUBTFUL, suggestion=text)
 

@@ -54,15 +54,26 @@ def test_what_nothing_can_be_done_for_is_never_suggested(other: str) -> None:
     assert meant("fetch the mud", **{other: 0.99}) == ""
 
 
-def test_only_what_may_be_meant_is_planned() -> None:
-    planned: list[str] = []
+@pytest.mark.parametrize(
+    ("heard", "others", "planned"),
+    [
+        ("fetch the mug", {"fetch_the_cup": 0.01}, ["fetch the mug"]),
+        ("fetch the mug", {"fetch_the_cup": 0.3, "fetch_the_mud": 0.25}, ["fetch the mug", "fetch the cup"]),
+        ("fish the mug", {"fetch_the_cup": 0.1, "fetch_the_mug": 0.4}, ["fish the mug", "fetch the mug"]),
+        ("fletch the mug", {"fetch_the_mug": 0.4, "fish_the_mug": 0.02}, ["fletch the mug", "fetch the mug"]),
+    ],
+)  # fmt: skip
+def test_only_what_may_change_the_outcome_is_planned_and_once(
+    heard: str, others: dict[str, float], planned: list[str]
+) -> None:
+    found: list[str] = []
 
     def plan(text: str) -> ActionPlan:
-        planned.append(text)
+        found.append(text)
         return PLANS[text]
 
-    chosen("fetch the mug", [Transcription(text="fetch the cup", score=0.01)], plan, KNOWN)
-    assert planned == ["fetch the mug"]
+    chosen(heard, [Transcription(text=name.replace("_", " "), score=p) for name, p in others.items()], plan, KNOWN)
+    assert found == planned
 
 
 def test_a_request_with_alternatives_is_told_what_to_ask_about() -> None:
