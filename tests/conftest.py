@@ -12,6 +12,8 @@ from evaluation.site import Site, site
 
 IN_PROCESS = ("unit", "in_process")
 """Directories of the tests that start no processes."""
+APART = "/in_process/", "test_sentences_are_understood"
+"""Of tests that share nothing with the others of their file and take long: whole missions, and lists of sentences."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -24,16 +26,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items[:] = chain.from_iterable(in_turn)
 
 
-class MissionsApart(LoadFileScheduling):
-    """Files stay together, for the robots they share, but not whole missions in one process: those share nothing."""
+class SomeApart(LoadFileScheduling):
+    """Files stay together, for the robots they share, but for those of `APART`."""
 
     def _split_scope(self, nodeid: str) -> str:
-        return nodeid if "/in_process/" in nodeid else super()._split_scope(nodeid)
+        return nodeid if any(part in nodeid for part in APART) else super()._split_scope(nodeid)
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> MissionsApart | None:
-    return MissionsApart(config, log) if config.getoption("dist") == "loadfile" else None
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SomeApart | None:
+    return SomeApart(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture
