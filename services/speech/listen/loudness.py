@@ -1,7 +1,6 @@
 """Loudness of the microphone's sound: automatic gain, and the level of background voices."""
 
 from collections import deque
-from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,20 @@ RELEASE = 10 ** (-6.0 / 20 * FRAME / RATE)
 between words, which sounds like a voice then)."""
 SMOOTHED = round(0.25 * RATE / FRAME)
 """Frames over which loudness is averaged: a quarter of a second (chosen: a syllable)."""
-BACK, SPAN = round(5.0 * RATE / FRAME), round(4.0 * RATE / FRAME)
-"""Frames after which, and over which, voices are background that still go on: those from 5 to 9 s ago (chosen:
-commands are shorter)."""
-UNVOICED = 0.4
-"""Share of the time that may be pauses of the voices, and the quantile of their loudness that counts (chosen)."""
-LOUDER = 6.0
-"""How much louder than the background a voice has to be [dB] (chosen: several people who talk vary by half of it)."""
+GOING_ON = round(5.0 * RATE / FRAME)
+"""Frames of late in which voices count as going on (chosen: commands are shorter)."""
+VOICED = 0.6
+"""Share of these with a voice, at least (chosen: the rest may be pauses of theirs)."""
+MEMORY = round(12.0 * RATE / FRAME)
+"""Frames whose quietest are the background: as long as the longest utterance, which so has the silence before it or
+that of its own pauses among them."""
+QUIETEST = 0.15
+"""Quantile of their loudness that is the background's. One who talks is as quiet as the room for that share of the
+time, several at once hardly quieter than their mean (chosen: at 0.1 a television is no background, at 0.2 two people
+who talk in a quiet room are)."""
+LOUDER = 8.0
+"""How much louder than that a voice has to be [dB]. Chosen on three voices: 6 and 10 came to the same but for a person
+6 dB above the others, whose words 10 cuts."""
 
 
 class Gain:
@@ -44,23 +50,25 @@ class Gain:
 
 
 class BackgroundVoices:
-    """Level of voices that go on for seconds, as of a television or of guests who talk.
+    """Level of voices that go on for seconds, as of guests who talk or of a television.
 
-    Only who is louder speaks to the robot. A command is over before it counts itself.
+    Only who is louder speaks to the robot. Nobody is the background to their own words, as a person pauses: the level
+    is that of the quietest moments, as in minimum statistics (R. Martin, "Noise power spectral density estimation
+    based on optimal smoothing and minimum statistics", 2001).
     """
 
     def __init__(self) -> None:
         self._powers: deque[float] = deque(maxlen=SMOOTHED)
-        self._levels: deque[float] = deque(maxlen=BACK + SPAN)
+        self._levels: deque[float] = deque(maxlen=MEMORY)
+        self._voiced: deque[bool] = deque(maxlen=GOING_ON)
 
     def push(self, power: float, voiced: bool) -> float:
         """By how much a frame of mean power `power`, with those just before it, is louder than the background [dB];
         infinite without voices there."""
         self._powers.append(power)
         level = 10 * float(np.log10(max(sum(self._powers) / len(self._powers), 1.0)))
-        self._levels.append(level if voiced else -np.inf)
-        if len(self._levels) < SPAN + BACK:
+        self._levels.append(level)
+        self._voiced.append(voiced)
+        if len(self._voiced) < GOING_ON or sum(self._voiced) < VOICED * GOING_ON:
             return np.inf
-        before, since = (sorted(islice(self._levels, *part)) for part in ((0, SPAN), (SPAN, None)))
-        going_on = since[int(BACK * UNVOICED)] > -np.inf
-        return level - before[int(SPAN * UNVOICED)] if going_on else np.inf
+        return level - sorted(self._levels)[int(len(self._levels) * QUIETEST)]
