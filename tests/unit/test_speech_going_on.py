@@ -63,7 +63,7 @@ class Listener:
         self.queue = UtteranceQueue(config, self.worker, self, FrontEnd)  # type: ignore[arg-type]
         self.begins(1.0)
 
-    def push(self, _samples: Samples) -> list[Segment]:
+    def push(self, _samples: Samples, _own: bool) -> list[Segment]:
         self.speaking, number, self.ended = not self.ended, self.ended, 0
         return [Segment(np.full(RATE, number, np.int16), True, 0.0)] if number else []
 

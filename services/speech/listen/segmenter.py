@@ -7,6 +7,7 @@ import numpy as np
 from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.loudness import FRAME, LOUDER, BackgroundVoices, Gain
+from services.speech.listen.own_voice import OwnVoice
 from services.speech.listen.vad import STOP_AT, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
 
@@ -26,7 +27,10 @@ class Segment:
 
 
 class Segmenter:
-    """Cuts sound into utterances: `push` takes samples and returns those that pause or end in them."""
+    """Cuts sound into utterances: `push` takes samples and returns those that pause or end in them.
+
+    Where the microphone hears the robot itself, what is said after it is no part of that utterance.
+    """
 
     def __init__(self, config: SpeechConfig) -> None:
         self._detector = VoiceDetector()
@@ -39,6 +43,7 @@ class Segmenter:
         self._frames: list[Samples] = []
         self._rest = np.zeros(0, np.int16)
         self._examined = False
+        self._own = OwnVoice()
 
     @property
     def speaking(self) -> bool:
@@ -55,14 +60,14 @@ class Segmenter:
         if self._wakes and self._wake is None:
             self._wake = WakeWord()
 
-    def push(self, samples: Samples) -> list[Segment]:
-        """Take 16 kHz samples (n,); returns the utterances that pause or end in them."""
+    def push(self, samples: Samples, own: bool = False) -> list[Segment]:
+        """Take 16 kHz samples (n,); returns the utterances that pause or end in them. `own`: the robot speaks."""
         found = []
         stream = np.concatenate([self._rest, samples])
         usable = len(stream) // FRAME * FRAME
         self._rest = stream[usable:]
         for start in range(0, usable, FRAME):
-            segment = self._frame(stream[start : start + FRAME])
+            segment = self._frame(stream[start : start + FRAME], own)
             if segment is not None:
                 found.append(segment)
         return found
@@ -77,12 +82,13 @@ class Segmenter:
         self._endpointer.reset()
         self._detector.reset()
 
-    def _frame(self, frame: Samples) -> Segment | None:
+    def _frame(self, frame: Samples, own: bool) -> Segment | None:
         before = self.speaking
         probability = self._detector(self._gain(frame))
+        self._own.push(own, probability > STOP_AT)
         power = float(np.mean(np.square(frame, dtype=np.float32)))
-        if self._background.push(power, probability > STOP_AT) < LOUDER:
-            probability = 0.0
+        if not own and self._background.push(power, probability > STOP_AT) < LOUDER:
+            probability = 0.0  # the robot itself is no background: who answers it need not be louder
         ended = self._endpointer.push(probability)
         self._frames.append(frame)
         if not self.speaking:
@@ -99,10 +105,20 @@ class Segmenter:
             return self._end()
         if self._endpointer.quiet == 0:
             self._examined = False
-        elif self._endpointer.quiet == self._pause and len(self._frames) * FRAME <= self._short + PRE_ROLL:
-            self._examined = True
-            return Segment(np.concatenate(self._frames), False, self.wake)
+        elif self._endpointer.quiet == self._pause:
+            return self._pauses()
         return None
+
+    def _pauses(self) -> Segment | None:
+        """The utterance that pauses, if it is short. One that the robot spoke in itself is over."""
+        found = None
+        if len(self._frames) * FRAME <= self._short + PRE_ROLL:
+            self._examined = True
+            found = Segment(np.concatenate(self._frames), False, self.wake)
+        if self._own.ends:
+            self._frames, self._examined = self._frames[-self._pause :], False
+            self._endpointer.reset()
+        return found
 
     def _end(self) -> Segment:
         segment = Segment(np.concatenate(self._frames), True, self.wake, self._examined)

@@ -144,7 +144,7 @@ class UtteranceQueue:
                 self._submit(segment, now, key)
         for samples, addressed in parts:
             self._update_context(now, addressed, speaking, listening)
-            for segment in self._segmenter.push(samples):
+            for segment in self._segmenter.push(samples, speaking):
                 self._submit(segment, now, key)
 
     def take(self, now: float) -> PendingUtterance | None:
