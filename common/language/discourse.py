@@ -18,7 +18,7 @@ from common.language.noun_phrase import NUMBERS
 from common.language.place_told import with_what_is_missed, with_whereabouts
 from common.language.politeness import without_politeness
 from common.language.preamble import with_preamble
-from common.language.repairs import settled
+from common.language.repairs import begun_anew, settled
 from common.language.speeches import LONG_SPEECH, as_speech
 from common.language.timing import in_time
 
@@ -49,6 +49,8 @@ _FIRST_AFTER = re.compile(r"^(?P<first>first(?:ly)? .+?),? (?:and )?after(?: tha
 _LATER = re.compile(
     r"^(?P<first>.+?),? (?P<word>before|after|once|when|as soon as) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$"
 )
+_NOT_UNTIL = re.compile(r"^do not (?P<second>\w+ .+?),? (?:until|till|before) you(?: have)? (?P<first>.+)$")
+"""What is forbidden only as long as something else is not done: the other thing, and then it."""
 _GO_AND = (
     rf"\b{TO_GO}(?: over| along| across| down| up)* (?:to|into|in) (?P<place>(?:the|my|our) \w+(?: \w+)?)"
     r" (?:and|to) (?:see|tell me|check|look|find out|report|let me know)(?: back)? "
@@ -131,7 +133,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     text = put_where_labelled(_HEADING.sub("", text), is_place)
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
     told = with_preamble(with_what_is_missed(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:"))), is_place)
-    whole = without_fillers(as_speech(re.sub(r":(?=\s)", ",", told)))
+    whole = begun_anew(without_fillers(as_speech(re.sub(r":(?=\s)", ",", told))))
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _AND_TELL.sub(r"\g<look>", whole)
     whole = _GO_AND_LOOK.sub(
@@ -163,6 +165,8 @@ def _in_order(text: str) -> list[str]:
             if _ALWAYS.search(text):  # "when you tidy up put the balls in the toy box from now on"
                 return [other]
             return [other, one] if found["word"] == "before" else [one, other]
+    if (found := _NOT_UNTIL.match(bare)) and verb_first(found["second"]) and verb_first(found["first"]):
+        return [_with_infinitive(found["first"]), found["second"]]
     if (found := _BUT_FIRST.match(bare)) and verb_first(found["first"]):
         return [found["first"], found["second"]]
     if found := _FIRST_AFTER.match(text):

@@ -62,15 +62,18 @@ _BUT = (
 """Words before what is left out."""
 _UNSEEN = (
     "dirty clean empty full used old new nice fresh cold hot warm favourite favorite normal regular ordinary own "
-    "lovely pretty good whole remaining same usual more certain single stupid silly dumb damn damned darn bloody "
-    "blasted flipping freaking wretched ruddy crappy lousy ugly beautiful gorgeous cute dear precious special "
+    "lovely pretty good whole remaining same usual more certain single stupid silly dumb "
+    "crappy lousy ugly beautiful gorgeous cute dear precious special "
     "beloved horrible awful terrible nasty disgusting filthy grubby messy dusty sticky wet damp ancient spare "
     "extra leftover missing lost forgotten important useless useful handy tasty yummy delicious juicy ripe rotten "
     "healthy cool chilled lukewarm cheap expensive fancy trusty actual real exact particular specific entire "
     "annoying boring amazing awesome fantastic brilliant wonderful great perfect best bad heavy fragile poor "
     "famous funny weird strange proper correct"
 )
-UNSEEN = frozenset(_UNSEEN.split())
+_CURSES = "damn damned darn darned bloody blasted flipping freaking wretched ruddy bleeding goddamn"
+CURSES = frozenset(_CURSES.split())
+"""What only tells how somebody feels about a thing, so that it is no part of any name."""
+UNSEEN = CURSES.union(_UNSEEN.split())
 """Qualities that nobody can see or that tell nothing apart."""
 _MEASURES = frozenset(
     {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind", "either"}

@@ -51,6 +51,12 @@ REFUSALS: tuple[Wording, ...] = (
     ),
     Wording(
         "refuse",
+        "give [<words>] (a | an | another) [good | quick | gentle | big | proper | little] (rub | scrub | wipe | wash"
+        " | rinse | polish | shake | stir | massage | kick | push | hug | kiss | cuddle | pat | stroke | squeeze)",
+        reason=_ALL_I_DO,
+    ),
+    Wording(
+        "refuse",
         "do (the | some | my | our) (washing | dishes | laundry | ironing | cooking | hoovering | cleaning | vacuuming"
         " | shopping | homework | beds) [up]",
         reason=_ALL_I_DO,

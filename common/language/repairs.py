@@ -20,6 +20,10 @@ _REPAIR = re.compile(
     r"no|scratch that)?\b[,.]?\s*"
 )
 """Between what was said and what was meant."""
+_TAKEN_BACK = re.compile(
+    r"(?:[.;!?]\s*)+(?:no,? )?(?:(?:scratch|strike|scrap) that|(?:my )?final answer)(?:\s*[.;:!,])+\s*(?=\w)"
+)
+"""The same as a sentence of its own."""
 _AFTERTHOUGHT = re.compile(
     r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
     r"be precise|actually)$"
@@ -107,6 +111,15 @@ _NEXT_TO_THERE = re.compile(
 """Where something is to be put, and next to what there."""
 _THE_ONE = re.compile(r"(?<=\w),? the one (?=(?:with|on|in|from|at|next to|near|beside) )")
 _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
+
+
+def begun_anew(text: str) -> str:
+    """The text without what was taken back in a sentence of its own: `the can. scratch that. bring me the mug`."""
+    said, *others = _TAKEN_BACK.split(text)
+    meant = ""
+    for part in others:  # what is no command corrects the last one
+        said, meant = (part, "") if verb_first(without_politeness(part)) else (said, part)
+    return f"{said}, scratch that, {meant}" if meant else said
 
 
 def settled(text: str, is_place: IsPlace) -> str:

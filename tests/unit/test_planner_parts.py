@@ -4,6 +4,7 @@ import pytest
 
 from common.household import load_household
 from common.language.clauses import clauses
+from common.language.discourse import commands
 from common.language.normalise import infinitive
 from common.language.pattern import Pattern, PatternError, needed, parse
 from common.messages import KnownWorld, PlanStep
@@ -112,3 +113,17 @@ def test_checked_steps_carry_the_names_of_the_scene() -> None:
 def test_impossible_steps_are_named(rows: list[tuple[str, str, str]], reason: str) -> None:
     with pytest.raises(Impossible, match=reason):
         check(*rows)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("do not bring me the mug until you have tidied the desk", ["tidy the desk", "bring me the mug"]),
+        ("do not bring me the mug until i say so", ["do not bring me the mug until i say so"]),
+        ("bring me the can. scratch that. go to the desk", ["go to the desk"]),
+        ("the blue can. scratch that. the red one. final answer, the green one", ["the green can"]),
+        ("bring me the can. the green one is mine", ["bring me the can", "the green one is mine"]),
+    ],
+)
+def test_what_is_put_off_or_taken_back_is_not_done_first(text: str, expected: list[str]) -> None:
+    assert commands(text) == expected

@@ -124,3 +124,13 @@ def test_something_is_brought_to_where_somebody_is_told_to_be() -> None:
 )
 def test_what_it_is_wanted_for_asks_for_nothing_more(said: str) -> None:
     assert steps(said) == [("find", "duck"), ("grasp", "duck"), ("return",), ("release",)]
+
+
+def test_a_curse_is_no_part_of_a_name() -> None:
+    (found,) = [step for step in steps("bring me that blasted duck") if step[0] == "find"]
+    assert found[1] == "duck"
+
+
+@pytest.mark.parametrize(("said", "fetched"), [("give it a rub", False), ("give me the polish", True)])
+def test_a_treatment_is_not_looked_for(said: str, fetched: bool) -> None:
+    assert any(step[0] == "grasp" for step in steps(said)) == fetched

@@ -8,6 +8,7 @@ import msgspec
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, without_determiners
 from common.language.noun_phrase import (
+    CURSES,
     NUMBERS,
     RELATIONS,
     SIDES,
@@ -151,10 +152,10 @@ def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     rest = without_measure(words)
     any_one = rest[:1] in (("a",), ("an",), ("some",), ("any",), ("one",))
     determined = False
-    while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS):
+    while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS or rest[0] in CURSES):
         if rest[0] in ("the", "my") and rest[1] in ("a", "an", "the"):
             return None  # a word misheard: "the a pull"
-        rest, determined = rest[1:], True
+        rest, determined = rest[1:], determined or rest[0] not in CURSES
     first = next((i for i, w in enumerate(rest[:-1]) if w not in vocabulary.colours), len(rest) - 1)
     colours, noun = tuple(vocabulary.colours[w] for w in rest[:first]), rest[first:]
     sense = vocabulary.new_noun(noun, determined)
