@@ -23,6 +23,9 @@ from services.manipulation.planning.object_source import ObjectSource
 
 DESCRIPTION_PATIENCE = 3.0
 """How long a goal waits for the robot's description [s]; chosen: it is latched and comes at once."""
+NEXT_ATTEMPT = 3.0
+"""How long an arm over a surface waits for the next attempt to put down what it holds [s]. Chosen: the brain sends one
+after a second."""
 LETTING_GO = "release"
 """The phase of placing in which the fingers open."""
 
@@ -53,6 +56,7 @@ class ManipulationService:
         self._led = LedHand(self._robot)
         self._looked_for = ""
         self._waiting_since: float | None = None
+        self._fold_at = math.inf
         self._status = m.ManipulationStatus(status="idle")
         io.publish(topics.MANIPULATION_STATUS, self._status)
 
@@ -70,8 +74,10 @@ class ManipulationService:
         if io.take_all(topics.ROBOT_STOP):
             self._led.stop()
             self._end(Failure("STOPPED", "robot/stop"))
+            self._fold_at = math.inf
         self._inbox.receive()
-        if self._steps is None and self._led.left_out and refusal(io.latest(topics.BRAIN_STATE)):
+        led_away = self._led.left_out and refusal(io.latest(topics.BRAIN_STATE))
+        if self._steps is None and (led_away or now > self._fold_at):
             self._fold()
         if self._steps is not None:
             self._advance(now)
@@ -87,7 +93,7 @@ class ManipulationService:
         self._end(Failure("PREEMPTED", f"replaced by {new.goal}"))
 
     def _take(self, goal: m.ManipulationGoal) -> None:
-        self._goal = goal
+        self._goal, self._fold_at = goal, math.inf
         verb, _, rest = goal.goal.strip().partition(" ")
         robot = self._robot
         if goal.goal.strip() == "stop":
@@ -106,11 +112,11 @@ class ManipulationService:
         self._publish("executing", "start")
 
     def _fold(self) -> None:
-        """A mission begins while the arm is where a person has led it: back to the carry pose with it."""
-        self._led.left_out = False
+        """Back to the carry pose with an arm that a person, or a placing that failed, has left elsewhere."""
+        self._led.left_out, self._fold_at = False, math.inf
         self._goal = m.ManipulationGoal(goal="home", id=self._io.new_id(self.NAME))
         self._waiting_since = self._robot.now
-        self._steps = self._with_planner(recovery.go_home(self._robot))
+        self._steps = self._with_planner(recovery.fold(self._robot))
 
     def _sequence(self, verb: str, rest: str) -> Steps[str] | None:
         robot = self._robot
@@ -121,7 +127,7 @@ class ManipulationService:
         if verb == "place" and rest:
             return self._place(rest)
         if verb == "home" and not rest:
-            return self._with_planner(recovery.go_home(robot))
+            return self._with_planner(recovery.fold(robot))
         return None
 
     def _with_planner(self, steps: Steps[T]) -> Steps[T]:
@@ -188,6 +194,8 @@ class ManipulationService:
             self._publish("done", "", "", str(stop.value))
         except Failure as failure:
             self._end(failure)
+            if self._goal.goal != "home" and self._robot.grip.holds():
+                self._fold_at = now + NEXT_ATTEMPT
         else:
             if self._robot.phase != phase:
                 if self._robot.phase == LETTING_GO:

@@ -23,7 +23,7 @@ from services.manipulation.grasps.grasp_store import GraspStore
 from services.manipulation.grasps.grasp_verification import held_badly, judge, settled
 from services.manipulation.grasps.rules import candidates
 from services.manipulation.grasps.target import Target
-from services.manipulation.service import ManipulationService
+from services.manipulation.service import NEXT_ATTEMPT, ManipulationService
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
 from tests.mission import Robot
@@ -240,6 +240,21 @@ def test_what_cannot_be_done_fails_with_a_code_and_a_reason(text: str, code: str
     status = Arm().ask(text)
     assert (status.status, status.code, status.goal_id, status.attempt) == ("failed", code, "a.1", 1)
     assert status.detail
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_an_arm_that_holds_what_could_not_be_put_down_is_taken_back_where_no_attempt_follows(stopped: bool) -> None:
+    node = Arm()
+    node.step(1.0)
+    node.width, node.force = 0.05, 25.0
+    node.step(0.1)
+    assert node.ask("place table", seconds=2.0).status == "failed"
+    again = node.ask("place table", "a.2", NEXT_ATTEMPT - 0.5)
+    assert (again.status, again.goal_id) == ("failed", "a.2"), "the next attempt goes on from there"
+    if stopped:
+        node.bus.send(topics.ROBOT_STOP, m.RobotStop(reason="test"))
+    node.step(NEXT_ATTEMPT)
+    assert (node.status().status == "done") == (not stopped), "an arm that was stopped stays where it is"
 
 
 def test_an_object_out_of_reach_is_refused_with_the_distance() -> None:

@@ -12,6 +12,7 @@ from services.manipulation.arm.trajectory import Leg
 from services.manipulation.execution.releasing import STUCK
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
+from services.manipulation.planning.lift import straight_up
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.planning_scene import obstacles
 
@@ -57,12 +58,7 @@ def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[
     Raises:
         PlanError: BLOCKED.
     """
-    planner.arm.hold(None)
-    here = planner.arm.pose(now)
-    for height in (lift, lift / 2):
-        up = planner.straight(now, here, here.moved(np.array([0.0, 0.0, height])))
-        if up is None:
-            continue
+    for up in straight_up(planner, now, lift):
         try:
             return [Leg([now, *up], near=True), *planner.carry(held, up[-1], around)]
         except PlanError:
@@ -89,11 +85,17 @@ def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
     return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
 
 
+def fold(robot: Robot) -> Steps[str]:
+    """To the carry pose, with what is held."""
+    return (yield from retract_grasped(robot, None) if robot.grip.holds() else go_home(robot))
+
+
 def brought_back(robot: Robot, steps: Steps[str]) -> Steps[str]:
     """Steps that leave an empty hand over a surface where they fail: the arm is taken back before that is said.
 
     The base drives on after a failure, and an arm that is held out meets furniture on the way. With something in the
-    hand the next attempt goes on from there, which finds ways that the first one did not.
+    hand the next attempt goes on from there, which finds ways that the first one did not; the service takes the arm
+    back where none comes.
 
     Raises:
         Failure: as the steps do.

@@ -1,4 +1,4 @@
-"""The lift of a grasped object above its neighbours, before the arm turns away with it."""
+"""The lift of a grasped object: off what it touches, and above its neighbours before the arm turns away with it."""
 
 from collections.abc import Sequence
 
@@ -35,6 +35,14 @@ def over_neighbours(
         if path is not None and not any(planner.arm.collides(q) for q in path):
             return path
     return []
+
+
+def straight_up(planner: Planner, now: Array, lift: float) -> list[list[Array]]:
+    """Joint paths straight up from `now` (7,), by `lift` [m] and by half of it, where the arm can."""
+    planner.arm.hold(None)
+    here = planner.arm.pose(now)
+    paths = (planner.straight(now, here, here.moved(np.array([0.0, 0.0, way]))) for way in (lift, lift / 2))
+    return [path for path in paths if path is not None]
 
 
 def _apart(solid: Obstacle, target: Target) -> float:
