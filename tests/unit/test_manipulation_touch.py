@@ -30,7 +30,7 @@ from services.manipulation.execution.place_executor import lower
 from services.manipulation.execution.recovery import go_home
 from services.manipulation.execution.robot import DT, Failure, Robot, Steps
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
-from services.manipulation.execution.setting_down import STANDING, set_down
+from services.manipulation.execution.setting_down import PRESSED, STANDING, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import Planner
@@ -214,6 +214,46 @@ def test_the_hand_opens_where_it_is_felt_to_stand_or_is_on_the_surface_itself_an
     fell_short = end.position[2] - planner.reaction.position(robot.joints)[2]
     assert code == ("" if ends else "NOT_MET")
     assert fell_short == pytest.approx(min(surface, 0.05), abs=0.003)
+
+
+@pytest.mark.parametrize("turns", [True, False])
+def test_what_hangs_far_lower_is_pressed_back_or_put_down_as_it_hangs_the_next_time(
+    turns: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its far end is met 6 cm too high: turned by its weight, or, held in its middle, it turns back with 16 N."""
+    node, robot, planner, above, top = reaching()
+
+    def at_once(work: Any, *of: Any) -> Steps[Any]:
+        yield
+        return work(*of)
+
+    monkeypatch.setattr(robot, "work", at_once)
+    end = above.moved(np.array([0.0, 0.0, -0.08]))
+    down = planner.straight(top, above, end)
+    assert down is not None
+    plan = PlacePlan([top], [top, *down], [], True, [], [], (0.55, 0.0))
+    offset = np.array([0.0 if turns else 0.05, 0.0, 0.015])
+    held = GraspedObject("rattle", "", above.rotation, offset, (0.2, 0.03, 0.03), 0.03, 0.0)
+    robot.joints, robot.grasped, code, most, was = top, held, "", 0.0, 1.0
+    try:
+        for _ in lower(robot, plan, held, falls=False):
+            sent = node.sent(topics.ARM_COMMAND)
+            robot.joints = np.array(sent[-1].position) if sent else top
+            height = float(planner.reaction.position(robot.joints)[2] - end.position[2])
+            stiff = 8000.0 * max(0.0, 0.06 - height)
+            # It gives way, but not to the blow of the first contact.
+            force = min(stiff, 16.0 if was - height < 0.0008 else 24.0) if turns else stiff
+            was = height
+            most = max(most, force)
+            robot.torques = planner.reaction.torques(robot.joints, np.array([0.0, 0.0, -force]))
+    except Failure as failure:
+        code = failure.code
+    left = float(planner.reaction.position(robot.joints)[2] - end.position[2])
+    assert code == ("" if turns else "BLOCKED")
+    assert robot.grasped is not None
+    assert (robot.grasped.rotation == pytest.approx(held.rotation)) == turns
+    assert left < 0.01 if turns else left > 0.07, "it touches nothing as the next attempt begins"
+    assert most < 2 * PRESSED
 
 
 def test_the_hand_keeps_room_to_open_when_it_is_wedged(arm: ArmModel) -> None:

@@ -7,18 +7,21 @@ import numpy as np
 from msgspec.structs import replace
 
 from common.floor_plan import Receptacle
-from common.geometry import compose, to_frame
+from common.geometry import Array, compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
-from services.manipulation.arm.touch import TOUCHED
+from services.manipulation.arm.touch import HIT, TOUCHED
+from services.manipulation.arm.trajectory import back_along
 from services.manipulation.execution.recovery import go_home
 from services.manipulation.execution.releasing import STUCK, let_go
-from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
-from services.manipulation.execution.setting_down import probe, set_down
+from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
+from services.manipulation.execution.setting_down import press_down, probe, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
+from services.manipulation.grasps.sagging import sagged
 from services.manipulation.planning.edge_spots import Placement, edge_spots
-from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place, plan_placements
+from services.manipulation.planning.lift import straight_up
+from services.manipulation.planning.plan_place import DEEPEST, DROP, PlacePlan, plan_place, plan_placements
 from services.manipulation.planning.planning_scene import bin_spots, obstacles, spots
 from services.manipulation.planning.surface_edge import facing_edge
 
@@ -30,6 +33,9 @@ BIN_DROP = 0.06
 """Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
 ACCESS = 0.08
 """Least free space [m] around an object that is to be left accessible: the breadth of the hand, open."""
+FLUSH = 0.008
+"""Height [m] above the end of the way down up to which it stands as it was believed to. Chosen: less than the
+centimetre of fall that counts as dropped."""
 STANDS, ASKEW = 0.03, 0.3
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
 down in the hand, or have been taken so far above its foot. What is held at its rim hangs askew by a share of its
@@ -164,28 +170,55 @@ def lower(robot: Robot, plan: PlacePlan, held: GraspedObject, falls: bool) -> St
     """Down until it stands: it is felt to, a little before the end of the way or beyond it, or the hand itself is on
     the surface. What `falls` into a bin is let go at the end of the way.
 
+    What touches its surface too early has turned, or slid, in the hand: it is pressed on gently, which turns it back.
+
     Raises:
-        Failure: BLOCKED, it met something that is not what it is put on; NOT_MET, nothing where its surface should be.
+        Failure: BLOCKED, it met something far too high, where `robot.grasped` hangs as that tells if it may have turned
+            so far; NOT_MET, nothing where its surface should be.
     """
-    feel = planner_of(robot).reaction
-    rest = yield from robot.at_rest()
+    rest, deeper = (yield from robot.at_rest()), [] if falls else plan.deeper
+    above = yield from _met(robot, plan, set_down(robot, plan.lower, robot.guard(rest)))
+    if above is None and falls:
+        return
+    if above is None:
+        above = yield from _met(robot, plan, probe(robot, deeper, rest))
+        if above is None and not plan.grounded:
+            raise Failure("NOT_MET", f"the {held.label} met nothing where it should stand, nor {DEEPEST:.2f} m below")
+    elif above > FLUSH:
+        most = STANDS + (ASKEW * max(held.size[:2]) if held.at_rim else 0.0)
+        turned = sagged(held, above) if above > most else None
+        if turned is None:
+            robot.io.log.info("pressed on", object=held.label, above_mm=round(1000 * above, 1))
+            path = [*back_along(plan.lower[::-1], robot.joints), *deeper]
+            above = (yield from _met(robot, plan, press_down(robot, path, rest))) or 0.0
+        if above > most:
+            robot.grasped = turned or robot.grasped
+            yield from _take_up(robot, rest)
+            raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high")
+    robot.io.log.info("set down", object=held.label, above_mm=above and round(1000 * above, 1))
+
+
+def _met(robot: Robot, plan: PlacePlan, way: Steps[None]) -> Steps[float | None]:
+    """How far [m] above the end of the way down something was felt on a way, None where nothing was.
+
+    Raises:
+        Failure: as `Robot.follow`, but for TOUCHED.
+    """
     try:
-        yield from set_down(robot, plan.lower, robot.guard(rest))
+        yield from way
     except Failure as failure:
         if failure.code != TOUCHED:
             raise
-        above = float(feel.position(robot.joints)[2] - feel.position(plan.lower[-1])[2])
-        if above > STANDS + (ASKEW * max(held.size[:2]) if held.at_rim else 0.0):
-            raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
-        robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
-        return
-    if falls:
-        return
-    felt = yield from probe(robot, plan.deeper, rest)
-    below = 1000 * float(feel.position(plan.lower[-1])[2] - feel.position(robot.joints)[2])
-    if not (felt or plan.grounded):
-        raise Failure("NOT_MET", f"the {held.label} met nothing, {below:.0f} mm below where it should stand")
-    robot.io.log.info("set down", object=held.label, felt=felt, below_mm=round(below, 1))
+        feel = planner_of(robot).reaction
+        return float(feel.position(robot.joints)[2] - feel.position(plan.lower[-1])[2])
+    return None
+
+
+def _take_up(robot: Robot, rest: Array) -> Steps[None]:
+    """Off what is met, so that the next attempt begins where it touches nothing."""
+    ways = yield from robot.work(straight_up, planner_of(robot), robot.joints.copy(), robot.config.lift_height)
+    if ways:
+        yield from robot.follow(ways[0], robot.config.joint_speed * SLOWLY, robot.guard(rest, HIT, "up"))
 
 
 def _unknown(robot: Robot) -> GraspedObject:
