@@ -1,17 +1,20 @@
 """What is felt of a grasp on its way to the carry pose."""
 
+import itertools
 from collections.abc import Generator
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from common.messages import ManipulationGoal, WorldObject
 from common.robot.grip import Grip
 from services.manipulation.arm.arm_model import Pose
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution import grasp_executor
+from services.manipulation.execution.grasp_executor import MISSED
 from services.manipulation.execution.robot import Failure, Robot
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach
@@ -68,3 +71,50 @@ def test_what_slips_on_the_way_is_not(monkeypatch: pytest.MonkeyPatch, carried: 
     with pytest.raises(Failure) as failed:
         grab(monkeypatch, carried)
     assert failed.value.code == "SLIPPED"
+
+
+@pytest.mark.parametrize(("moved", "tries"), [(0.0, 1), (2 * MISSED, 4)])
+def test_where_the_hand_has_closed_on_nothing_it_does_not_try_again_by_the_same_sighting(
+    moved: float, tries: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`moved`: how far [m] it is seen from where it was seen before, each time."""
+    seen, stance, attempts = itertools.count(), (0.1, 0.2, 0.3), []
+
+    def nothing(*_: Any, **__: Any) -> Generator[None, None, Any]:
+        yield
+        return AT
+
+    def sighted(*_: Any, **__: Any) -> Generator[None, None, WorldObject]:
+        yield
+        return replace(FOUND, position=(0.55 + moved * next(seen), 0.0, 0.6))
+
+    def chosen(*_: Any, **__: Any) -> Generator[None, None, GrabPlan]:
+        yield
+        return GrabPlan(GRASP, [], [AT], [AT] * 4, [], attach(TARGET, GRASP))
+
+    def empty(robot: Any, plan: Any, *_: Any) -> Generator[None, None, str]:
+        yield
+        attempts.append(plan)
+        raise Failure("EMPTY_GRASP", "width 0.0 mm")
+
+    def elsewhere(robot: Any, found: Any, failure: Failure) -> Generator[None, None, None]:
+        yield
+        raise Failure(failure.code, failure.detail, (), stance)
+
+    log = SimpleNamespace(info=lambda *_, **__: None, warning=lambda *_, **__: None)
+    robot = SimpleNamespace(
+        config=ManipulationConfig(), grip=Grip(0.0, 0.0), base=(0.0, 0.0, 0.0), now=0.0, phase="", grasped=None,
+        sent_to={}, contacts=SimpleNamespace(clear=lambda: None), move_gripper=nothing,
+        io=SimpleNamespace(household=None, publish=lambda *_: None, log=log),
+    )  # fmt: skip
+    fakes = {
+        "sighted": sighted, "chosen": chosen, "_execute_grab": empty, "look_elsewhere": elsewhere, "go_home": nothing,
+        "target_of": lambda *_: TARGET, "surroundings": lambda *_: [], "touched_from": lambda *_: [],
+        "shown": lambda *_: None,
+    }  # fmt: skip
+    for name, fake in fakes.items():
+        monkeypatch.setattr(grasp_executor, name, fake)
+    with pytest.raises(Failure) as failed:
+        list(grasp_executor.grab(cast(Robot, robot), ManipulationGoal(goal="grab"), ""))
+    assert (failed.value.code, len(attempts)) == ("EMPTY_GRASP", tries)
+    assert failed.value.stance == (stance if tries == 1 else None)

@@ -47,12 +47,12 @@ def chosen(
         else:
             if is_poor(plan.grasp) and not tried and found.label not in robot.sent_to:
                 poor = Failure("UNREACHABLE", f"the {found.label} is hardly held from here")
-                yield from _look_elsewhere(robot, found, poor, stand_on, target)
+                yield from look_elsewhere(robot, found, poor, stand_on, target)
             return plan
         if failure.code != "UNREACHABLE":
             raise failure
         if not tried and (stand_on is None or (target.lies and found.label not in robot.sent_to)):
-            yield from _look_elsewhere(robot, found, failure, stand_on)
+            yield from look_elsewhere(robot, found, failure, stand_on)
     raise failure
 
 
@@ -69,8 +69,8 @@ def _stands_on(robot: Robot, found: WorldObject, target: Target, to: str) -> flo
     return surface.center[2] if surface is not None and not surface.depth else None
 
 
-def _look_elsewhere(
-    robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None, seen: Target | None = None
+def look_elsewhere(
+    robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None = None, seen: Target | None = None
 ) -> Steps[None]:
     """Return where no other stance helps; `seen`: the target of which a good grasp is wanted.
 

@@ -1,5 +1,6 @@
 """Grasp executor: reach, aim, grasp, retract; another candidate after a miss."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from services.manipulation.execution.grasp_checks import (
     note_contact,
     touched_from,
 )
-from services.manipulation.execution.grasp_choice import chosen, surroundings
+from services.manipulation.execution.grasp_choice import chosen, look_elsewhere, surroundings
 from services.manipulation.execution.recovery import go_home, retreat
 from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, planner_of
 from services.manipulation.execution.setting_down import set_down
@@ -32,6 +33,8 @@ from services.manipulation.planning.straight_grab import with_reserve
 
 TOO_WIDE = "TOO_WIDE"
 """Code: the object does not fit between the open fingers."""
+MISSED = 0.015
+"""Distance [m] of two sightings of the same place. Chosen: the noise of either; what fingers push away goes farther."""
 WEIGHED = 3
 """Points of the lift at whose end what is too heavy has shown: 40 mm, where 30 N bend the arm by 3; slowly, for where
 the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
@@ -47,12 +50,15 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     tried: list[Grasp] = []
     widths: list[float] = []
     last = Failure("UNREACHABLE", "no grasp tried")
-    weighed = False
+    weighed, missed = False, (math.inf, 0.0, 0.0)
     for _ in range(config.max_candidates):
         try:
             found = yield from sighted(robot, goal, wanted, since, touched=bool(tried))
         except Failure as failure:
             raise (Failure(last.code, f"{last.detail}; {failure.detail} since") if tried else failure) from None
+        if math.dist(found.position, missed) < MISSED and found.label not in robot.sent_to:
+            # The hand has closed on nothing where it is seen again from here: from elsewhere it is seen otherwise.
+            yield from look_elsewhere(robot, found, last)
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
@@ -85,6 +91,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             robot.grasped = None
             yield from robot.move_gripper(0.0)
             yield from go_home(robot)
+            if failure.code == "EMPTY_GRASP":
+                missed = found.position
             if failure.code == TOO_HEAVY:
                 # Fingers that are wedged between a thing and its surface feel the same once, not from another side too.
                 if weighed:
