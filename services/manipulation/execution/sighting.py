@@ -2,16 +2,22 @@
 
 import math
 
+import numpy as np
+
 from common import messages as m
 from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.grasp import on_handle
+from services.manipulation.grasps.target import Target
 from services.manipulation.planning.plan_grab import GrabPlan, refine
 from services.manipulation.planning.planning_scene import target_of, tilt_of, turned
 
 MISTAKEN = "MISTAKEN"
 """Code: the object is not where the grasp was planned for; a new plan is needed, no attempt was made."""
+
+OUTERMOST = (0.02, 0.98)
+"""Shares of what was seen of something along an axis between which its sides are; beyond are mixed pixels."""
 
 
 def sighted(
@@ -56,7 +62,7 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
     if seen is None:
         return plan
     was, new = (target_of(o, robot.base, robot.io.household) for o in (found, seen))
-    shift = new.position[0] - was.position[0], new.position[1] - was.position[1]
+    shift = moved(was, new)
     off, turn = math.hypot(*shift), turned(was, new) if kind_of(found.kind).shape == "box" else 0.0
     if off > config.aim_most or turn > config.aim_turn:
         raise Failure(MISTAKEN, f"{found.label} is {1000 * off:.0f} mm and {math.degrees(turn):.0f} deg from there")
@@ -71,3 +77,17 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
         ))  # fmt: skip
     except Failure:
         return plan
+
+
+def moved(was: Target, new: Target) -> tuple[float, float]:
+    """How far (x, y) [m] something is seen from where it was seen before: without a shape of its own, as far as both of
+    its sides are. From near, a part of it may be all that is seen, and the middle of that is elsewhere.
+    """
+    shift = np.array(new.position) - np.array(was.position)
+    if was.points is None or new.points is None or was.shape not in ("long", "irregular"):
+        return float(shift[0]), float(shift[1])
+    before, after = (np.quantile(points, OUTERMOST, axis=0) for points in (was.points, new.points))
+    sides = (after - before + shift)[:, :2]
+    least = np.where((sides > 0).all(axis=0) | (sides < 0).all(axis=0), np.abs(sides).min(axis=0), 0.0)
+    x, y = least * np.sign(sides[0])
+    return float(x), float(y)
