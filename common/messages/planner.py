@@ -96,6 +96,10 @@ class PlanRequest(Message):
     alternatives: list[Transcription] = []
 
 
+SENSELESS = "I do not understand"
+"""How the `detail` of a plan begins against words that fit no wording; any other is why something cannot be done."""
+
+
 class ActionPlan(Message):
     """`again`: these steps only go and look; the command has to be planned anew with what they show.
 

@@ -7,7 +7,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
-from common.messages import AROUND, GRIPPER, PlanStep
+from common.messages import AROUND, GRIPPER, SENSELESS, PlanStep
 from common.naming.part_names import is_for_people
 from common.naming.words import Destination
 from services.planner.choice_points import ChoicePoints
@@ -16,7 +16,7 @@ from services.planner.grammar.senses import Spot
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import BelievedObject, World
 
-NOT_UNDERSTOOD = "I do not understand"
+NOT_UNDERSTOOD = SENSELESS
 """How the reason begins against words that fit no wording."""
 
 

@@ -151,13 +151,14 @@ def test_nobody_answers_a_guess() -> None:
     assert bench.outcome == "failed"
 
 
-def unclear(bench: Bench, count: int, steps: list[m.PlanStep], suggestion: str = "") -> None:
+def unclear(bench: Bench, count: int, steps: list[m.PlanStep], suggestion: str = "", detail: str = "") -> None:
     """Words that speech took for no command, and what the planner makes of them."""
     others = [m.Transcription(text="i am angry", score=0.2)]
     bench.send(topics.SPEECH_UNCLEAR, m.VoiceCommand(text="i am hungry", confidence=0.0, alternatives=others))
     request = bench.next_goal(PLAN, count)
     assert (request.command, request.alternatives) == ("i am hungry", others)
-    bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=steps, suggestion=suggestion))
+    plan = m.ActionPlan(request_id=request.id, steps=steps, suggestion=suggestion, detail=detail)
+    bench.send(topics.ACTION_PLAN, plan)
     bench.step(0.5)
 
 
@@ -171,10 +172,19 @@ def test_what_speech_takes_for_no_command_is_asked_about_where_there_is_a_plan(s
     assert bench.next_goal(PLAN, 2).command == text
 
 
-def test_what_has_no_plan_either_was_not_understood() -> None:
+@pytest.mark.parametrize(
+    ("detail", "said"),
+    [
+        ("", m.NOT_UNDERSTOOD),
+        (f"{m.SENSELESS} 'i am hungry'", m.NOT_UNDERSTOOD),
+        ("I know no windowsill", "I know no windowsill."),
+        ("the shelf is too high", "I cannot do that: the shelf is too high."),
+    ],
+)
+def test_what_has_no_plan_either_was_not_understood_or_cannot_be_done(detail: str, said: str) -> None:
     bench = bench_of()
-    unclear(bench, 1, [])
-    assert bench.texts(SPEECH) == [f"say {m.NOT_UNDERSTOOD}"]
+    unclear(bench, 1, [], detail=detail)
+    assert bench.texts(SPEECH) == [f"say {said}"]
     assert bench.states()[-1] == "WAITING" and bench.outcome == ""
 
 

@@ -96,13 +96,18 @@ class Asides:
         return True
 
     def _weighed(self, command: m.VoiceCommand | None, plan: m.ActionPlan) -> None:
-        """Ask about the transcription for which there is a plan, or about what the planner takes it for."""
+        """Ask about the transcription for which there is a plan, or about what the planner takes it for.
+
+        Of words that ask for what cannot be done, such as putting something on what nobody knows, the reason is said.
+        """
         ctx = self._ctx
         if command is None or ctx.mission.active or ctx.voice.command is not None:
             return
         if plan.suggestion or plan.steps:
             text = plan.suggestion or command.text
             ctx.voice.command = msgspec.structs.replace(command, text=text, confidence=0.0, alternatives=[])
+        elif plan.detail and not plan.detail.startswith(m.SENSELESS):
+            self.speak(refused("do", plan.detail))
         else:
             ctx.say(m.NOT_UNDERSTOOD)
 
