@@ -6,7 +6,7 @@ from common import config
 from common.messages import Transcription
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
-from services.speech.recognise.free_text import MOST, UNLISTED, as_heard, cost, freely, without_itself
+from services.speech.recognise.free_text import MOST, PLAIN, UNLISTED, as_heard, cost, freely, without_itself
 from services.speech.recognise.recogniser import Recognition, Verdict
 from services.speech.recognise.sounding import editex, resounded
 from services.speech.recognise.wake_text import without_wake
@@ -101,6 +101,9 @@ DOUBT = CONFIG.certain - 0.01
         (("go to the shelf", "ask", 0.4, "Is the mug on the shelf?", 0.4), "is the mug on the shelf", "accept", 0.4),
         (("the mug", "reject", 0.1, "Hey Jarvis, bring me my wallet.", 0.9), "bring me my wallet", "accept", UNLISTED),
         (("the mug", "ask", 0.3, "Bring me my wallet.", DOUBT), "the mug", "ask", 0.3),
+        (("the mug", "reject", 0.1, "Bring me my wallet.", PLAIN), "bring me my wallet", "accept", UNLISTED),
+        (("the mug", "ask", 0.19, "Bring me my wallet.", PLAIN), "bring me my wallet", "accept", UNLISTED),
+        (("the mug", "reject", 0.1, "Bring me my wallet.", PLAIN - 0.01), "the mug", "reject", 0.1),
         (("the mug", "reject", 0.1, "The mug was broken in May.", 0.9), "the mug", "reject", 0.1),
         (("hey jarvis put the mug on the table", "accept", 0.7, "Take the mug off the table.", 0.9),
          "take the mug off the table", "accept", UNLISTED),

@@ -47,9 +47,10 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
 
     In place of a sentence that was accepted it counts where it is more certain, or makes something else of it ("who put
     the mug there" is no "put the mug there"), and is asked about, as is a sentence where hardly anything was heard. Of
-    things that are not among the `names` only a certain transcription tells, and so of what may ask for something in
-    wordings that nobody knows. What sounds like something that would be understood is asked about; one of many
-    sentences that fit as badly is not, nor how a sentence that breaks off might go on.
+    things that are not among the `names` only a certain transcription tells, or a plain one where the grammar has
+    nothing instead; of what may ask for something in wordings that nobody knows, a certain one. What sounds like
+    something that would be understood is asked about; one of many sentences that fit as badly is not, nor how a
+    sentence that breaks off might go on.
     """
     found = replace(found, text=without_wake(found.text, config.wake))
     free = _plain(found.free, config)
@@ -72,7 +73,8 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         return replace(found, text=free, verdict="accept", confidence=_assured(found))
     if near := _misheard(free, names, VERY_NEAR if grade else NEAR):
         return replace(found, text=near, verdict="accept", confidence=min(found.certainty, UNLISTED))
-    if grade == "unlisted" and found.certainty >= config.certain:
+    instead = found.verdict == "ask" and found.confidence >= LEAST
+    if grade == "unlisted" and found.certainty >= (config.certain if instead else PLAIN):
         return replace(found, text=free, verdict="accept", confidence=min(found.certainty, UNLISTED))
     if found.verdict == "reject" and found.certainty >= config.certain and perhaps(free, names):
         return replace(found, text=free, verdict="accept", confidence=UNLISTED)
