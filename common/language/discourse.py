@@ -20,7 +20,7 @@ from common.language.politeness import without_politeness
 from common.language.preamble import with_preamble
 from common.language.repairs import begun_anew, settled
 from common.language.speeches import LONG_SPEECH, as_speech
-from common.language.timing import in_time
+from common.language.timing import THERE, in_time
 
 _FIRST = re.compile(
     r"^(?P<word>after|once|when|as soon as|before) (?:you(?: are| have)?(?: all)?(?: done| finished)? |(?=\w+ing\b))"
@@ -51,6 +51,8 @@ _LATER = re.compile(
 )
 _NOT_UNTIL = re.compile(r"^do not (?P<second>\w+ .+?),? (?:until|till|before) you(?: have)? (?P<first>.+)$")
 """What is forbidden only as long as something else is not done: the other thing, and then it."""
+_ONCE_THERE = re.compile(rf",? (?:and )?{THERE}(?:(?=[.!]*$)|,? (?={A_VERB}\b))")
+"""That something is to be done behind the way that is asked for before it, where it is done anyway."""
 _GO_AND = (
     rf"\b{TO_GO}(?: over| along| across| down| up)* (?:to|into|in) (?P<place>(?:the|my|our) \w+(?: \w+)?)"
     r" (?:and|to) (?:see|tell me|check|look|find out|report|let me know)(?: back)? "
@@ -134,6 +136,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     text = _WHAT_IS_HELD.sub(lambda found: f"{found['verb'] or found['handed']}it", text)
     told = with_preamble(with_what_is_missed(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:"))), is_place)
     whole = begun_anew(without_fillers(as_speech(re.sub(r":(?=\s)", ",", told))))
+    whole = _ONCE_THERE.sub(lambda found: " and " if found.end() < len(whole.rstrip(".! ")) else "", whole)
     whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
     whole = _AND_TELL.sub(r"\g<look>", whole)
     whole = _GO_AND_LOOK.sub(

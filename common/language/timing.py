@@ -10,6 +10,8 @@ from common.language.quantities import NUMBERS, UNITS
 _NUMBER = rf"(?:a|an|and|of|about|around|another|just|maybe|\d+|{'|'.join(NUMBERS)})"
 DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
 """Words of a length of time, as `quantities.duration` reads them."""
+THERE = r"(?:when|once|as soon as) you(?: are| have)? (?:got there|get there|there|arrived?)"
+"""At the end of a way."""
 _APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
 _LATER = "(?:from now|time|later|on)"
 _PASSED = (

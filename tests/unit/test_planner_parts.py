@@ -122,6 +122,8 @@ def test_impossible_steps_are_named(rows: list[tuple[str, str, str]], reason: st
         ("do not bring me the mug until i say so", ["do not bring me the mug until i say so"]),
         ("bring me the can. scratch that. go to the desk", ["go to the desk"]),
         ("the blue can. scratch that. the red one. final answer, the green one", ["the green can"]),
+        ("go to the desk and say hello when you get there", ["go to the desk and say hello"]),
+        ("go to the desk and when you are there look around", ["go to the desk and look around"]),
         ("bring me the can. the green one is mine", ["bring me the can", "the green one is mine"]),
     ],
 )

@@ -36,6 +36,12 @@ _ONE_MOMENT = re.compile(
     r"(?:second|sec|moment|minute|bit|tick)(?:,? (?:the|my|there|i|someone|somebody) .+)?$|^(?:wait|hold "
     r"on|hang on)(?:,? (?:wait|hold on|hang on))*$"
 )
+_WARNED = re.compile(
+    r"^(?:(?:be |please )?careful|easy|steady|whoa|hey|oi|oh|no|(?:look|watch) out|(?:watch|mind) (?:the|your|my))\b"
+    r"|^(?!(?:and|or|if|when|once|after|before|as|until|while|then|so)\b)(?:\w+ ){1,4}?(?:is|are|has|have)\b"
+    r"|^(?:the|my|our|a) \w+'s \w+ing\b"
+)
+"""A warning, or what is told of somebody or something: `mind the cat`, `the baby is in front of you`."""
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
     r"^(?:(?:i|we) )?(?:have )?(?:just |already )?found (?:it|them|one|him|her)\b(?!.* but\b)|"
@@ -91,7 +97,7 @@ def interjection(said: str, doing: str = "") -> Interjection:
     `doing`: the command under way, which a sentence that forbids something of it calls off.
     """
     found, least = by_wording(said, doing)
-    decided = found.kind == "encouragement" or _FORBIDDEN.match(_words(said))
+    decided = found.kind in ("stop", "encouragement") or _FORBIDDEN.match(_words(said))
     if decided or asks_for(said, "stop", "cancel", "come_back"):
         return found
     sense, p = AT_WORK.likeliest(said, doing, found.kind)
@@ -136,10 +142,22 @@ def _control(said: str, words: str) -> Interjection | None:
         return Interjection("stop", said)
     if (_is_news(reason) or _LEFT.match(reason)) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
+    if _waits_behind_a_warning(words):
+        return Interjection("stop", said)
     if _called_off_in_part(words):
         return Interjection("cancel", said)
-    waits = _ONE_MOMENT.match(words) or _ONE_MOMENT.match(without_politeness(words))
-    return Interjection("stop", said) if waits else None
+    return Interjection("stop", said) if _waits(words) else None
+
+
+def _waits_behind_a_warning(words: str) -> bool:
+    """`mind the cat, hang on`: is it to wait, for what the parts before tell of?"""
+    *told, last = words.split(", ")
+    warned = all(_WARNED.match(part) or _is_news(part) for part in told)
+    return bool(told) and warned and _waits(last)
+
+
+def _waits(words: str) -> bool:
+    return any(_ONE_MOMENT.match(text) for text in (words, without_politeness(words)))
 
 
 def _called_off_in_part(words: str) -> bool:

@@ -2,17 +2,20 @@
 
 import re
 
+from common.language.timing import THERE
+
 LATER = re.compile(
     r"^(?:and )?(?:"
     r"(?:when|once|as soon as|after) you(?: are| have)?(?: all)? "
     r"(?:done|finished|ready|through|free|back|did|get back|come back)(?:(?: with)? (?:that|this|it))?|"
     r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
+    rf"{THERE}|"
     r"then|after(?:wards?| that| this| it)?|next|later(?: on)?|in addition|on top of that)\b[, ]*"
 )
 """Words before a command that put it behind the one under way."""
 LATER_END = re.compile(
     r"[, ]+(?:after(?:wards| that| this)?|next|later(?: on)?|too|as well|"
-    r"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back))$"
+    rf"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back)|{THERE})$"
 )
 """The same behind it."""
 AFTER_DOING = re.compile(
