@@ -90,6 +90,11 @@ def test_a_guess_is_asked_about_and_not_carried_out(said: str, asked: str) -> No
     assert (found.steps, found.asks) == ([], asked)
 
 
+def test_a_request_behind_a_question_is_not_dropped_with_an_answer() -> None:
+    found = planned("what's standing to the left of the red can on the counter? bring me that")
+    assert found.steps == [] and found.reason
+
+
 @pytest.mark.parametrize(
     "said", ["hurl the mug at the ceiling", "he lugs the mug to the desk", "i plan to lug the mug to the desk"]
 )

@@ -50,6 +50,7 @@ def test_sentences_at_work_that_nobody_worked_on() -> None:
 @pytest.mark.parametrize(
     ("said", "kind"),
     [("those were my very words", "yes"), ("nae chance", "no"), ("i never said that", "no"), ("huh?", "correction"),
+     ("what? no", "no"), ("Huh?! Yes, please", "yes"), ("what? the blue one", "correction"),
      ("the blue one", "correction")],
 )  # fmt: skip
 def test_an_answer_in_any_words_is_a_yes_or_a_no(said: str, kind: str) -> None:

@@ -21,6 +21,8 @@ _CORRECTION = re.compile(
 )
 
 
+_BAFFLED = re.compile(r"^\s*(?:what|huh|eh|hm+|sorry|pardon)\s*[?!]+\s*(?=\w)", re.IGNORECASE)
+"""A cry before the answer proper: `what? no`."""
 _MISHEARD = re.compile(r"^no,? (?:not )?(?:the )?\w+(?: \w+)? (?=i (?:said|meant)\s)")
 _MORE = re.compile(r"\b(?:and|as well|too|also|then)\b")
 """Words of an answer that asks for more than was asked about."""
@@ -43,6 +45,7 @@ def reply(text: str, asked: str = "") -> tuple[Reply, str]:
 
     By its wording, or as it is most likely meant as an answer to whether the command `asked` was meant.
     """
+    text = _BAFFLED.sub("", text)
     kind, rest = by_wording(text)
     parts = pieces(text) if asked else []
     if parts and all(rejected(part) or _kind(part) == "no" for part in parts):

@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from common.language.itself import about_itself
+from common.language.lexicon import HANDLING
 from common.language.mood import forbids, is_asked
 from common.language.normalise import Words
 from common.messages import PlanStep
@@ -103,7 +104,7 @@ def guess(parts: Sequence[Part], builder: PlanBuilder) -> Guess:
     """The plan of the likeliest parts of a sentence; what is told in it is noted.
 
     Raises:
-        Refusal: it asks for nothing, cannot be planned, or what it asks for is too uncertain.
+        Refusal: it asks for nothing, cannot be planned, is a question beside a request, or is too uncertain.
     """
     asked = [part for part in parts if part.meant.text]
     p = min((part.p for part in asked), default=0.0)
@@ -121,6 +122,8 @@ def guess(parts: Sequence[Part], builder: PlanBuilder) -> Guess:
     if not builder.steps:
         raise Refusal(_NOTHING)
     answers = all(part.meant.kind == "ask" for part in asked) and all(s.action == "say" for s in builder.steps)
+    if answers and any(not part.meant.text and part.words[0] in HANDLING for part in parts):
+        raise Refusal(_NOTHING)  # "what is on the desk? bring it to me"
     return Guess([part.meant.text for part in asked], builder.steps, answers, p)
 
 
