@@ -15,6 +15,9 @@ from services.brain.language.offered import likeliest
         ("whichever has soup in it", ["red can", "white can"], "white can"),
         ("the red's fine", ["red mug", "blue mug"], "red mug"),
         ("the first will do", ["counter", "kitchen table"], "counter"),
+        ("the one I can hardly see, it's so tiny", ["yellow block", "blue block"], "blue block"),
+        ("the big'un", ["blue block", "yellow block"], "yellow block"),
+        ("the massive one, I think", ["blue block", "yellow block"], "yellow block"),
     ],
 )
 def test_an_option_is_told_by_what_only_that_one_has(said: str, options: list[str], meant: str) -> None:
@@ -28,7 +31,7 @@ def test_the_same_words_choose_by_where_things_stand() -> None:
     assert (first, second) == ("blue mug", "red can")
 
 
-@pytest.mark.parametrize("said", ["what a lovely day", "hm", "neither of those, forget it"])
+@pytest.mark.parametrize("said", ["what a lovely day", "hm", "neither of those, forget it", "by the big bottle"])
 def test_words_that_tell_nothing_apart_choose_nothing(said: str) -> None:
     assert chosen(said, ["red mug", "blue mug"], FLAT, HOME) is None
 

@@ -30,6 +30,9 @@ _SIZES: dict[str, Which] = {
     "tall": "tallest", "high": "tallest", "short": "shortest", "low": "shortest", "big": "biggest", "large": "biggest",
     "small": "smallest", "little": "smallest", "tiny": "smallest",
 }  # fmt: skip
+_OF_SIZE = "|".join(word for word, which in WHICH.items() if which in _SIZES.values())
+_SIZED = re.compile(rf"\b({_OF_SIZE})(?:'un| one)?(?: please)?(?:$|,)")
+"""A size that tells of no other noun: `the one that is so tiny`, `the big one, i think`."""
 _PEOPLE = frozenset({"fellow", "fella", "guy", "chap", "lad", "beauty", "boy", "thing", "bloke"})
 """Words for anything at all."""
 _LAST = frozenset({"last", "latter", "later"})
@@ -71,6 +74,8 @@ def chosen(
     wanted = ",".join(part for part in meant.split(",") if "not" not in expand(part).split())
     likely, p = likeliest(wanted or meant, options, known, household)
     named = any(not set(option.split()).isdisjoint(words) for option in options)
+    if not named and UNFIT.isdisjoint(words) and len(sizes := set(_SIZED.findall(wanted))) == 1:
+        return _extreme(WHICH[sizes.pop()], options, known)
     least = FIRM if named and not UNFIT.isdisjoint(words) else SURE
     return likely if likely and p >= least else _another(words, options, known)
 
