@@ -147,6 +147,22 @@ def test_a_blade_and_its_handle_are_one() -> None:
     assert jointed(view, high, (high.points[:, 1] > 0.0).astype(np.intp), 0.0015) is not None
 
 
+def test_what_is_a_little_higher_is_joined_where_it_meets_narrowly_and_goes_on_level() -> None:
+    view, bulb = rod([GREEN, RED], [0.024, 0.03])
+    cut = (bulb.points[:, 1] > 0.0).astype(np.intp)
+    assert jointed(view, bulb, cut, 0.0015) is None, "a bulb and its cap"
+    assert jointed(view, bulb, cut, 0.0015, crowd=True) is not None
+    higher = replace(bulb, surface=Surface("table", FLOOR - 0.04))
+    assert jointed(view, higher, cut, 0.0015) is not None, "what stands beside another"
+    behind = replace(view, depth=(view.depth + 0.03 * (view.points[..., 1] > 0)).astype(np.float32))
+    assert jointed(behind, bulb, cut, 0.0015) is not None, "what another hides a part of"
+
+
+def test_a_tool_that_is_too_long_for_a_vessel_is_one_in_two_colours() -> None:
+    (found,) = pieces(*rod([GREEN, RED], [0.015, 0.015], long=0.34))
+    assert found.shape.size[0] == pytest.approx(0.34, abs=0.03)
+
+
 def slab(inside: Callable[[Array, Array], Mask], red: Callable[[Array, Array], Mask]) -> tuple[View, Segment]:
     """What lies flat before the camera, 15 mm high: its outline, and the part of it that is red and not brown."""
     rays = looks()

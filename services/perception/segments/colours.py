@@ -14,14 +14,17 @@ CHROMA = 0.05
 five times the noise of a pixel, smoothed, in a lit room."""
 BRIGHT = 0.30
 """Difference of brightness, by that of both, from which a colour ends: black beside white has no other."""
-LEAST_SHARE = 0.08
-"""Share of the segment's pixels that a piece has at least."""
+LEAST_SHARE, FEW_IN_A_CROWD = 0.08, 0.03
+"""Share of the segment's pixels that a piece has at least, and that the smallest of a crowd has."""
 MOST_PIECES, IN_A_CROWD = 4, 9
 """Patches of colour beyond which they are print on one object, and beyond which they are no crowd of objects."""
 
 
-def by_colour(view: View, segment: Segment, most: int = MOST_PIECES) -> NDArray[np.intp] | None:
-    """Number (n,) of the patch of one colour that each pixel belongs to; None if there is only one, or over `most`."""
+def by_colour(
+    view: View, segment: Segment, most: int = MOST_PIECES, least: float = LEAST_SHARE
+) -> NDArray[np.intp] | None:
+    """Number (n,) of the patch of one colour, of a `least` share of them, that each pixel belongs to; None if there is
+    only one, or over `most`."""
     top, left = int(segment.rows.min()), int(segment.columns.min())
     shape = int(segment.rows.max()) - top + 1, int(segment.columns.max()) - left + 1
     window = slice(top, top + shape[0]), slice(left, left + shape[1])
@@ -40,7 +43,7 @@ def by_colour(view: View, segment: Segment, most: int = MOST_PIECES) -> NDArray[
     labels = ndimage.label(mask & ~edge)[0]
     counts = np.bincount(labels[mask], minlength=1)
     counts[0] = 0
-    large = np.flatnonzero(counts >= max(MIN_PIXELS, LEAST_SHARE * len(segment.rows)))
+    large = np.flatnonzero(counts >= max(MIN_PIXELS, least * len(segment.rows)))
     if not 2 <= len(large) <= most:
         return None
     patches = [np.nonzero(labels == label) for label in large]

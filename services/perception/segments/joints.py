@@ -1,4 +1,4 @@
-"""Whether low pieces hang together end to end: a blade and its handle are one tool, whatever their colours. Pure."""
+"""Whether pieces hang together end to end: a blade and its handle are one tool, whatever their colours. Pure."""
 
 import math
 from collections.abc import Collection
@@ -23,20 +23,28 @@ STEP, STEP_NOISE = 0.006, 2.0
 RINGED, RIM = 0.6, 2
 """Share of the band of that width [pixels] around a piece from which it is within another that no shape explains and
 stands over it, and is of it: the lens of a magnifying glass. Chosen: the far side of its rim is hidden."""
+STANDS, NARROW, MOSTLY = 0.07, 0.35, 0.6
+"""Height [m] from which pieces stand beside each other, share of the smaller one's outline at which they meet, up to
+which that is a joint of what is lower, and the share of it without such a step that makes them one: a bulb and its cap.
+Chosen: a lying bulb, a whisk; what stands before another hides more of it, or steps down to it."""
 ALL_ALONG = 0.75
 """Share of that line on which there is no such step, from which a piece that has no shape of its own belongs to the
 other. Chosen: a wooden handle that runs round the red of its bat does; what lies on another or behind it steps down."""
 
 
 def jointed(
-    view: View, segment: Segment, cut: NDArray[np.intp], noise: float, shapeless: Collection[int] = ()
+    view: View,
+    segment: Segment,
+    cut: NDArray[np.intp],
+    noise: float,
+    shapeless: Collection[int] = (),
+    crowd: bool = False,
 ) -> NDArray[np.intp] | None:
     """The number (n,) of the piece of each pixel of `cut`, those that meet at a joint as one; None if all do.
 
-    `noise` [m]: of points along the line of sight; `shapeless`: pieces that no shape explains.
+    `noise` [m]: of points along the line of sight; `shapeless`: pieces that no shape explains; `crowd`: they are of
+    several objects, of which only those that lie are joined.
     """
-    if float(np.percentile(segment.points[:, 2], 98)) - segment.surface.height > LOW:
-        return cut
     numbers = np.full((int(np.ptp(segment.rows)) + 3, int(np.ptp(segment.columns)) + 3), -1)
     rows, columns = segment.rows - segment.rows.min() + 1, segment.columns - segment.columns.min() + 1
     numbers[rows, columns] = cut
@@ -53,11 +61,16 @@ def jointed(
         for b in range(a):
             meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
             share = len(meet) / min(outline[a], outline[b])
+            level = float(np.mean(meet < STEP + STEP_NOISE * noise)) if len(meet) else 0.0
+            high = max(tops[a], tops[b]) - segment.surface.height
+            if high > LOW:
+                if high < STANDS and not crowd and share < NARROW and level >= MOSTLY:
+                    names[names == names[a]] = names[b]
+                continue
             some = 0.25 if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
-            level = np.mean(meet < STEP + STEP_NOISE * noise) >= some if len(meet) else False
             inner, outer = sorted((a, b), key=lambda n: outline[n])
             ringed = outer in shapeless and tops[inner] < tops[outer] and _around(numbers, inner, outer) > RINGED
-            if level or ringed or 0 < share < THREAD:
+            if level >= some or ringed or 0 < share < THREAD:
                 names[names == names[a]] = names[b]
     return renumbered(names[cut])
 

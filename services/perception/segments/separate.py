@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from common.geometry import Point, Rectangle
 from services.perception.segments.air import hangs
-from services.perception.segments.colours import IN_A_CROWD, LEAST_SHARE, by_colour
+from services.perception.segments.colours import FEW_IN_A_CROWD, IN_A_CROWD, LEAST_SHARE, by_colour
 from services.perception.segments.joints import jointed
 from services.perception.segments.parts import between_jumps
 from services.perception.segments.seams import unseamed
@@ -47,6 +47,8 @@ BAND, BRIDGE = 0.006, 0.01
 """Half width [m] of that line, and of what is looked through under it."""
 LONGEST, WIDEST = 0.42, 0.12
 """Extents [m] on the floor plan up to which what is too long for a vessel is one object: a ladle, a rolling pin."""
+SLIMMEST = 3.0
+"""Length by width of the shortest tool of two colours. Chosen: a whisk has 4, two things beside each other 2."""
 SPLITS = 2
 """How often pieces are cut again."""
 
@@ -62,8 +64,10 @@ class Piece:
 def pieces(view: View, segment: Segment) -> list[Piece]:
     """The objects that a segment consists of; none where it is too wide for one and nothing parts it, but a tool."""
     if extent(segment) >= MAX_EXTENT:
-        crowd = [p for part in _crowd(view, segment) for p in pieces(view, part)]
-        return crowd or [p for p in [Piece(segment, measured(view, segment))] if _is_long(p.shape)]
+        whole = Piece(segment, measured(view, segment))
+        parts = _crowd(view, segment, _is_long(whole.shape))
+        crowd = [p for part in parts for p in pieces(view, part)]
+        return crowd or [whole] * _is_long(whole.shape)
     return _pieces(view, Piece(segment, measured(view, segment)), SPLITS)
 
 
@@ -73,11 +77,19 @@ def _is_long(shape: Measurement) -> bool:
     return length < LONGEST and width < WIDEST
 
 
-def _crowd(view: View, segment: Segment) -> list[Segment]:
-    """The parts of a segment that is too wide for one object, by their colours, else by the valley between them."""
+def _crowd(view: View, segment: Segment, long: bool) -> list[Segment]:
+    """The parts of a segment that is too wide for one object but a `long` one, of which there may be none: by colours,
+    those that hang together as one, else by the valley between them, else by the smallest patches."""
     cut = by_colour(view, segment, IN_A_CROWD)
+    if cut is not None:
+        joint = jointed(view, segment, cut, noise_of(view, segment), crowd=not long)
+        if joint is None and long:
+            return []
+        cut = cut if joint is None else joint
     if cut is None:
         cut = by_valley(view, segment)
+    if cut is None and not long:
+        cut = by_colour(view, segment, IN_A_CROWD, FEW_IN_A_CROWD)
     return _cut(view, segment, cut) if cut is not None else []
 
 
@@ -87,11 +99,13 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     if again == 0 or len(segment.rows) < 2 * MIN_PIXELS or whole.shape.residual < FINE + FINE_NOISE * noise:
         return [whole]
     coloured = by_colour(view, segment)
-    for cut in (
-        unseamed(view, segment, coloured, noise) if coloured is not None else None,
-        by_valley(view, segment),
-        by_jump(view, segment),
-    ):
+    if coloured is not None:
+        coloured = unseamed(view, segment, coloured, noise)
+        slim = SLIMMEST * min(whole.shape.size[:2]) < max(whole.shape.size[:2])
+        if coloured is not None and slim and jointed(view, segment, coloured, noise) is None:
+            # The waist between a blade and its handle parts them no more than their colours do.
+            return [whole]
+    for cut in (coloured, by_valley(view, segment), by_jump(view, segment)):
         if cut is None or (cut := jointed(view, segment, cut, noise)) is None:
             continue
         cuts = [Piece(s, measured(view, s)) for s in _cut(view, segment, cut)]
