@@ -71,11 +71,11 @@ def elsewhere(
 
     `unreached`: viewpoints that it could not get to, as often as it tried. Another one is chosen as long as there is
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
-    takes it. Sofas and beds come last; then, if also from `near`, the tables and shelves that were not seen so.
+    takes it. Last, if also from `near`, come the tables and shelves that were not seen so.
     """
     views = _Views(floor_plan, viewpoints, likelihood)
     unseen, listed = _unseen(viewpoints, looked_from), viewpoints.listed
-    orders: list[_Order] = [(views, viewpoints.shows, unseen * listed), (views, viewpoints.shows, unseen)]
+    orders: list[_Order] = [(views, viewpoints.shows, unseen)]
     if near:
         orders.append((views, viewpoints.near, _unseen(viewpoints, looked_from, NEAR) * listed))
     return _next(orders, here, looked_from, unreached)
