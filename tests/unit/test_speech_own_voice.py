@@ -25,17 +25,25 @@ class Level:
         pass
 
 
-def heard(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> list[Segment]:
-    """The utterances that are over, of parts: how loud, how many frames, whether the robot speaks."""
+def heard(monkeypatch: pytest.MonkeyPatch, *parts: Part, over: bool = True) -> list[Segment]:
+    """The utterances that are over, or pause, of parts: how loud, how many frames, whether the robot speaks."""
     monkeypatch.setattr(segmenter, "VoiceDetector", Level)
     cut, found = Segmenter(SpeechConfig(wake_word=False)), []
     for level, frames, own in (*parts, (NOBODY, SECOND, False)):
         found += cut.push(np.full(frames * FRAME, level, np.int16), own)
-    return [segment for segment in found if segment.over]
+    return [segment for segment in found if segment.over == over]
 
 
-def test_who_answers_the_robot_soon_is_not_taken_for_a_part_of_what_it_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    (answer,) = heard(monkeypatch, (ROBOT, 3 * SECOND, True), (NOBODY, SECOND // 3, False), (PERSON, 2 * SECOND, False))
+@pytest.mark.parametrize("after", [0, SECOND // 3])
+def test_who_answers_the_robot_soon_is_not_taken_for_a_part_of_what_it_says(
+    monkeypatch: pytest.MonkeyPatch, after: int
+) -> None:
+    """`after`: frames of silence that end its own sound."""
+    (answer,) = heard(
+        monkeypatch,
+        (ROBOT, 3 * SECOND, True), (NOBODY, after, True), (NOBODY, SECOND // 3 - after // 2, False),
+        (PERSON, 2 * SECOND, False),
+    )  # fmt: skip
     assert set(answer.samples) == {NOBODY, PERSON}
     assert np.sum(answer.samples == PERSON) == 2 * SECOND * FRAME
 
@@ -62,3 +70,10 @@ def test_who_goes_on_after_the_robot_without_a_pause_is_not_cut_in_mid_sentence(
 def test_what_is_said_after_the_robot_need_not_be_louder_than_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
     (answer,) = heard(monkeypatch, (PERSON, 9 * SECOND, True), (NOBODY, SECOND // 3, False), (ROBOT, 2 * SECOND, False))
     assert np.sum(answer.samples == ROBOT) == 2 * SECOND * FRAME
+
+
+def test_a_word_into_a_short_reply_of_the_robot_is_still_examined(monkeypatch: pytest.MonkeyPatch) -> None:
+    parts = (ROBOT, SECOND // 2, True), (PERSON, SECOND // 2, False)
+    (paused,) = heard(monkeypatch, *parts, over=False)
+    assert set(paused.samples) == {ROBOT, PERSON, NOBODY}
+    assert not heard(monkeypatch, *parts)

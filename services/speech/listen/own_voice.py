@@ -6,9 +6,12 @@ from services.speech.listen.loudness import FRAME
 HEARD = 1 / 3
 """Share of the time that the robot speaks, synthesis among it, with a voice in the microphone, from which that is its
 own (chosen: where echo is cancelled there is only who talks over it)."""
-TAIL = round(0.75 * RATE / FRAME)
-"""Frames after its end in which a pause ends what was heard of it (chosen: half a second for the sound card's buffer
-and the room's echo, and the pause; in a later one somebody else has begun to speak)."""
+PAUSE = 5
+"""Frames of the pause that ends what was heard of it: 0.16 s (chosen: longer than the closure of a consonant; people
+answer after 0.2 s)."""
+TAIL = round(0.5 * RATE / FRAME) + PAUSE
+"""Frames after its end in which such a pause counts (chosen: half a second for the sound card's buffer and the room's
+echo; in a later one somebody else has begun to speak)."""
 
 
 class OwnVoice:

@@ -7,7 +7,7 @@ import numpy as np
 from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.loudness import FRAME, LOUDER, BackgroundVoices, Gain
-from services.speech.listen.own_voice import OwnVoice
+from services.speech.listen.own_voice import PAUSE, OwnVoice
 from services.speech.listen.vad import STOP_AT, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
 
@@ -105,18 +105,17 @@ class Segmenter:
             return self._end()
         if self._endpointer.quiet == 0:
             self._examined = False
-        elif self._endpointer.quiet == self._pause:
-            return self._pauses()
-        return None
+        return self._pauses()
 
     def _pauses(self) -> Segment | None:
-        """The utterance that pauses, if it is short. One that the robot spoke in itself is over."""
-        found = None
-        if len(self._frames) * FRAME <= self._short + PRE_ROLL:
+        """The utterance if it pauses, once and if it is short. One that the robot spoke in itself is over then."""
+        found, over = None, self._endpointer.quiet >= PAUSE and self._own.ends
+        short = len(self._frames) * FRAME <= self._short + PRE_ROLL
+        if short and not self._examined and (over or self._endpointer.quiet == self._pause):
             self._examined = True
             found = Segment(np.concatenate(self._frames), False, self.wake)
-        if self._own.ends:
-            self._frames, self._examined = self._frames[-self._pause :], False
+        if over:
+            self._frames, self._examined = self._frames[-PAUSE:], False
             self._endpointer.reset()
         return found
 
