@@ -47,7 +47,9 @@ REPLIES: tuple[Wording, ...] = (
         " | that is [exactly] what i (was after | asked for)"
         " | go [on | for it] | bang on | spot on | you [have] got it | right you are | you [have] got (it | that) "
         "right | precisely | you bet | uh huh | mhm | by all "
-        "means | please do | right | that is (it | the one) | why not | perfect",
+        "means | please do | right | that is (it | the one) | why not | perfect"
+        " | bingo | jackpot | that is the (ticket | stuff) | [you have] hit the nail on the head | [right] on the money"
+        " | [i] could not have (put | said) it better [myself] | loud and clear",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
@@ -60,7 +62,9 @@ REPLIES: tuple[Wording, ...] = (
               "| not (that | really | at all) | no way"
         " | [no] that is not (what i (said | meant | want | asked for) | right | correct | it | true) | not what "
         "i (said | meant)"
-        " | [no] i (did not | never) (say | mean) that | you (misheard | misunderstood) [me] | absolutely not",
+        " | [no] i (did not | never) (say | mean) that | you (misheard | misunderstood) [me] | absolutely not"
+        " | you (dreamt | dreamed | imagined) (that | it) | you must be dreaming | in your dreams | over my dead body"
+        " | (what | whatever) gave you that idea",
         heard="no [thanks] | nope", kind="reply", reason="I did not ask anything",
     ),
 )  # fmt: skip

@@ -49,7 +49,8 @@ def test_sentences_at_work_that_nobody_worked_on() -> None:
 
 @pytest.mark.parametrize(
     ("said", "kind"),
-    [("those were my very words", "yes"), ("nae chance", "no"), ("i never said that", "no"), ("huh?", "correction"),
+    [("those were my very words", "yes"), ("nae chance", "no"), ("i never said that", "no"), ("bingo!", "yes"),
+     ("that's the stuff", "yes"), ("that's the apple", "correction"), ("you dreamt that", "no"), ("huh?", "correction"),
      ("what? no", "no"), ("Huh?! Yes, please", "yes"), ("what? the blue one", "correction"),
      ("the blue one", "correction")],
 )  # fmt: skip
