@@ -50,6 +50,13 @@ def test_from_a_low_surface_it_is_taken_so_that_it_can_be_stood_up() -> None:
     assert can_be_set_down(PLANNER, plan.grasped, TRAY, REST)
 
 
+def test_a_mug_on_its_head_is_taken_so_that_it_can_be_turned_over() -> None:
+    mug = Target("mug", "mug", (0.68, 0.0, TRAY + 0.05), 0.4, (0.066, 0.066, 0.1), math.pi)
+    plan = planned(mug, TRAY)
+    assert plan.grasp.turns_over
+    assert can_be_set_down(PLANNER, plan.grasped, TRAY, REST)
+
+
 def test_where_it_can_only_be_laid_down_the_plan_says_so() -> None:
     high = bottle(0.78)
     with pytest.raises(PlanError, match="could not be stood up") as failed:

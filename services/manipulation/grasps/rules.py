@@ -41,8 +41,9 @@ BY_SHAPE: dict[str, tuple[GraspRule, ...]] = {
 """How a shape is grasped whose kind is not known. What is long or irregular only has its measured surface."""
 OPEN_VESSEL = (GraspRule("rim", (90, 80, 70)),)
 """How a vessel with an upright wall is grasped that does not fit between the fingers."""
-TURNING = GraspRule("around", (8, 3, 14))
-"""How what stands on its head is grasped: nearly level, so that the hand is above the surface either way up."""
+TURNING = (GraspRule("around", (0,), 0.4), GraspRule("around", (0, 8, 3, 14)))
+"""How what stands on its head is grasped: nearly level, so that the hand is above the surface either way up. Turned
+over it has its camera below it, for which the first leaves room."""
 
 
 def candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
@@ -59,7 +60,8 @@ def _candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
     if target.lies:
         return _lying(target, facing)
     if target.upside_down and kind_of(target.kind).upright:
-        turned = [replace(g, name=f"upside down, {g.name}", turns_over=True) for g in _round(target, facing, TURNING)]
+        found = [(rule.height, g) for rule in TURNING for g in _round(target, facing, rule)]
+        turned = [replace(g, name=f"upside down at {h:g}, {g.name}", turns_over=True) for h, g in found]
         return turned + _standing(target, facing, widest)
     return _standing(target, facing, widest)
 
