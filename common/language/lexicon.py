@@ -96,3 +96,8 @@ HANDLING: frozenset[str] = frozenset(
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}
 """The verbs among them of what is done to a thing."""
+PAIRED = (
+    r"(?:scissors|shears|clippers|secateurs|pliers|pincers|tweezers|tongs|(?:sun)?glasses|spectacles|goggles|binoculars|"
+    r"(?:head|ear)phones|earbuds|trousers|jeans|shorts|tights|leggings|pyjamas|socks|shoes|slippers|boots|sandals|gloves)"
+)
+"""What is one thing to somebody who asks for a pair of it."""

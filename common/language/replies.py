@@ -12,7 +12,7 @@ REPLIES: tuple[Wording, ...] = (
         " | hold still | [no | please] do not [move | do (that | it | this)]"
         " | [that is it] [that is | it is] enough | quit "
         "(it | that) | cut it out | knock it off | give over | pack it in | leave off | give it a rest | stay "
-        "(there | where you are) | emergency stop",
+        "(there | where you are) | emergency stop | [hit the] brakes [on] | brake",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
     Wording(
@@ -30,7 +30,7 @@ REPLIES: tuple[Wording, ...] = (
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
     Wording(
-        "continue", "continue | resume | go on | go ahead",
+        "continue", "continue | resume | go on | go ahead | carry on",
         heard="continue | resume", kind="reply", reason="there is nothing to continue",
     ),
     Wording(
@@ -48,6 +48,7 @@ REPLIES: tuple[Wording, ...] = (
         " | go [on | for it] | bang on | spot on | you [have] got it | right you are | you [have] got (it | that) "
         "right | precisely | you bet | uh huh | mhm | by all "
         "means | please do | right | that is (it | the one) | why not | perfect"
+        " | carry on | off you (go | pop)"
         " | bingo | jackpot | that is the (ticket | stuff) | [you have] hit the nail on the head | [right] on the money"
         " | [i] could not have (put | said) it better [myself] | loud and clear",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",

@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.lexicon import A_VERB, TO_GO
+from common.language.lexicon import A_VERB, PAIRED, TO_GO
 from common.naming.colours import COLOURS
 
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
@@ -26,14 +26,13 @@ SHORTER = tuple(
         (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside)\b)", "what is "),
         (r"\b(how many \w+) (?:stand|lie|sit) (?=(?:on|in|at)\b)", r"\1 are "),
         (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
-        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright "
-         rf")over) {_PREPOSITION}",
-         ""),
+        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright )over) "
+         rf"{_PREPOSITION}", ""),
         (r"\b(this|that|these|those) (?:(?:right |over )?here|(?:right|over) there)(?= "
          r"(?:is|are|should|must|will|goes?)\b)", r"\1"),
         (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
-        (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
-         r"devil|exactly|actually)\b", r"\1"),
+        (r"\b(wh(?:at|ere|o|y|ich)|how) (?:on earth|in the world|the (?:heck|hell|devil)|exactly|actually)\b", r"\1"),
+        (rf"\b(?:a|the|my|our|some|that) pair of (?=(?:\w+ )?{PAIRED}\b)", "the "), (r"\ba pair of (?=\w+s\b)", "two "),
         (r"\b(put|place|set|take|bring|carry|move|leave|drop) both (?=(?:to|on|in|into|onto)\b)", r"\1 them "),
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)|\bfor the life of (?:me|us)\b", ""),
         (r"\bto wherever (?=.+ (?:is|are|stands)$)", "to where "),

@@ -42,8 +42,8 @@ _SPOKEN = re.compile(
 )
 """A speech with a sentence in it, to which a time at the end belongs."""
 _TOLD = re.compile(
-    rf"^(?P<told>(?:i|we|he|she|it|they|there|my \w+|the \w+)\b(?! (?:wants?|needs?|would|must|should)\b)[^,.]+), "
-    rf"(?=(?:in|after) {DURATION}\b)"
+    rf"^(?P<told>(?:i|we|he|she|it|they|there|my \w+|the \w+)\b(?! (?:wants?|needs?|would|must|should)\b)[^,.]+?)"
+    rf"(?:,(?: and| so)*|(?: and)? so) (?=(?:in|after) {DURATION}\b)"
 )
 """What is told before a command for later."""
 _OURS = re.compile(r"\b(?:my|our)\b")

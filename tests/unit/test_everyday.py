@@ -77,6 +77,7 @@ LEAST = {
     "43": Least(0.6, 0.8, 15),
     "44": Least(0.75, 0.93, 7),
     "45": Least(0.55, 0.75, 14),
+    "46": Least(0.55, 0.75, 18),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
@@ -361,6 +362,7 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
         ("where is the apple", "aside", "where is the apple"),
         ("hang on", "stop", "hang on"),
         ("mind the cat! hang on!", "stop", "mind the cat! hang on!"),
+        ("oi, brakes on, the baby's on the floor!", "stop", "oi, brakes on, the baby's on the floor!"),
         ("the baby is in front of you, wait a moment", "stop", "the baby is in front of you, wait a moment"),
         ("when you get there say good night", "queue", "say good night"),
         ("look around once you're there", "queue", "look around"),

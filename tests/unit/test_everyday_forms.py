@@ -90,6 +90,7 @@ from evaluation.everyday.understanding import understand
         ("-", "please stop calling it vitamin box", "forget(vitamin box)"),
         ("-", "mugs don't go on the counter any more", "norule(mugs)"),
         ("-", "in five minutes' time go to the kitchen", "wait(300); goto(kitchen)"),
+        ("-", "I've got eggs on the boil, so in four minutes go to the kitchen", "wait(240); goto(kitchen)"),
         ("last:bring me the apple", "which table did you get it from?", "answer(kitchen table)"),
         ("-", "list all the cans and where they are", "answer(living table, counter, dresser)"),
         # Speech goes on until the next command.

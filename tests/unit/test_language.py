@@ -71,6 +71,7 @@ def sentences(node: Node) -> list[tuple[str, ...]]:
         ("robot, cancel it please", "cancel"),
         ("never mind", "cancel"),
         ("oh no, stop!", "stop"),
+        ("hit the brakes", "stop"),
         ("stop what you're doing", "stop"),
         ("don't move", "stop"),
         ("actually, forget about it", "cancel"),

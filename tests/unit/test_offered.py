@@ -17,6 +17,7 @@ from services.brain.language.offered import likeliest
         ("the first will do", ["counter", "kitchen table"], "counter"),
         ("the one I can hardly see, it's so tiny", ["yellow block", "blue block"], "blue block"),
         ("the big'un", ["blue block", "yellow block"], "yellow block"),
+        ("anything but the green'un", ["green bottle", "white bottle"], "white bottle"),
         ("the massive one, I think", ["blue block", "yellow block"], "yellow block"),
     ],
 )

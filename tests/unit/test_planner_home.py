@@ -123,3 +123,8 @@ def test_a_place_and_a_thing_may_be_learnt_by_a_name_without_my() -> None:
     assert planned("learn this place as the library") == "name place library"
     assert planned("this table shall be known as the workbench") == "name surface workbench"
     assert planned("remember this mug as bob") == "teach mug bob"
+
+
+def test_what_calls_a_place_untidy_names_nothing() -> None:
+    found = plan("this counter is a disgrace", world(), PlannerConfig())
+    assert (found.steps, found.suggestion) == ([], "tidy up the counter")

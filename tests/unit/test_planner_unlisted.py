@@ -134,3 +134,24 @@ def test_a_curse_is_no_part_of_a_name() -> None:
 @pytest.mark.parametrize(("said", "fetched"), [("give it a rub", False), ("give me the polish", True)])
 def test_a_treatment_is_not_looked_for(said: str, fetched: bool) -> None:
     assert any(step[0] == "grasp" for step in steps(said)) == fetched
+
+
+@pytest.mark.parametrize(
+    ("said", "thing"),
+    [
+        ("put the toy rabbit on the desk", "toy rabbit"),
+        ("there's a china dog on the bed, put it on the desk", "china dog"),
+        ("put the pair of scissors on the desk", "scissors"),
+    ],
+)
+def test_figures_of_animals_and_what_comes_in_pairs_are_things(said: str, thing: str) -> None:
+    assert steps(said)[-2:] == [("grasp", thing), ("place", thing, "desk")]
+
+
+@pytest.mark.parametrize("said", ["put the rabbit on the desk", "bring me the big dog"])
+def test_animals_are_not_picked_up(said: str) -> None:
+    assert steps(said) == []
+
+
+def test_two_of_a_kind_are_a_pair() -> None:
+    assert [step[1] for step in steps("bring me a pair of mugs") if step[0] == "grasp"] == ["red mug", "white mug"]

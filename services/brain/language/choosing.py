@@ -33,6 +33,8 @@ _SIZES: dict[str, Which] = {
 _OF_SIZE = "|".join(word for word, which in WHICH.items() if which in _SIZES.values())
 _SIZED = re.compile(rf"\b({_OF_SIZE})(?:'un| one)?(?: please)?(?:$|,)")
 """A size that tells of no other noun: `the one that is so tiny`, `the big one, i think`."""
+_THAT_ONE = re.compile(r"(?<=\w)'uns?\b")
+"""The end of `the green'un`."""
 _PEOPLE = frozenset({"fellow", "fella", "guy", "chap", "lad", "beauty", "boy", "thing", "bloke"})
 """Words for anything at all."""
 _LAST = frozenset({"last", "latter", "later"})
@@ -48,6 +50,8 @@ _SAID_BEFORE = re.compile(r"^.*\bi (?:meant|mean|said|wanted|want)\b(?! that\b)(
 _SEVERAL = re.compile(
     r"^(?:(?:i want|bring(?: me)?|get(?: me)?|give me|take|well|oh|yes) )*(?:both|all|each)\b(?! the same| right)"
 )
+_BUT = re.compile(r"\b(?:any(?:thing|one)?|everything|all|each) (?:of them )?(?:but|except|bar) ")
+"""What leaves something out: `anything but the green one`."""
 _WHERE_IT_IS = re.compile(r"^(?:where|what|which)\b.* (?:is|are|stands|lies|lives|sits|belongs|goes)$")
 """A relative clause, which says which one: `where the apple is`."""
 SURE, FIRM = 0.68, 0.95
@@ -92,7 +96,7 @@ def _singled_out(
     answer: str, options: Sequence[str], known: Sequence[WorldObject], household: Household | None
 ) -> str | None:
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
-    plain = without_politeness(normalise(without_lead(answer)))
+    plain = _THAT_ONE.sub("", without_politeness(normalise(without_lead(answer))))
     bare = " ".join(simplified(tuple(_NAMED_BEFORE.sub("", plain).split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     if (number := _number(words, len(options))) is not None:
@@ -101,7 +105,7 @@ def _singled_out(
     words = words - common or words
     if words and (words <= WHICH.keys()) and (extreme := _extreme(WHICH[next(iter(words))], options, known)):
         return extreme
-    bare = re.sub(r"\bneither (.+) nor ", r"not \1 not ", bare)
+    bare = _BUT.sub("not ", re.sub(r"\bneither (.+) nor ", r"not \1 not ", bare))
     if "not" in bare.split():
         named = (
             re.split(r"(?<=\w) the ", part.strip())[0] for part in bare.split("not")[1:]

@@ -138,7 +138,7 @@ def _control(said: str, words: str) -> Interjection | None:
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
     first, _, reason = words.partition(", ")
-    if asks_for(words.rpartition(", ")[2], "stop"):
+    if _stopped_in_part(words):
         return Interjection("stop", said)
     if (_is_news(reason) or _LEFT.match(reason)) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
@@ -147,6 +147,14 @@ def _control(said: str, words: str) -> Interjection | None:
     if _called_off_in_part(words):
         return Interjection("cancel", said)
     return Interjection("stop", said) if _waits(words) else None
+
+
+def _stopped_in_part(words: str) -> bool:
+    """Is the last part a stop, or one among warnings: `oi, brakes on, the baby is on the floor`?"""
+    parts = words.split(", ")
+    others = [part for part in parts if not asks_for(part, "stop")]
+    warned = all(_WARNED.match(part) or _is_news(part) for part in others)
+    return parts[-1] not in others or (warned and len(others) < len(parts))
 
 
 def _waits_behind_a_warning(words: str) -> bool:

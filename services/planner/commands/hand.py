@@ -2,7 +2,7 @@
 
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.pattern import Slots
-from services.planner.grammar.senses import LIVING
+from services.planner.grammar.senses import is_alive
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.reference.pronouns import Referent
 from services.planner.reference.resolve import referent, referents
@@ -49,7 +49,7 @@ def close_hand(builder: PlanBuilder, slots: Slots) -> None:
 
 def take(builder: PlanBuilder, meant: Referent) -> None:
     """Look for it where it is said to be, and grasp it."""
-    if meant.object.label.split()[-1] in LIVING:
+    if is_alive(tuple(meant.object.label.split())):
         raise Refusal("I pick up neither people nor animals")
     if meant.at is not None and not meant.object.seen:
         builder.go(meant.at)

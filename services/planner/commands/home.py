@@ -21,10 +21,18 @@ TOLD = 3
 """Places told at once (chosen: more nobody listens to)."""
 
 
+_UNTIDY = frozenset({"mess", "disgrace", "tip", "pigsty", "sty", "shambles", "state", "dump", "disaster", "nightmare"})
+"""What somebody calls a place that is to be tidied."""
+
+
 # --- names
 def name_place(builder: PlanBuilder, slots: Slots) -> None:
     """What the robot stands in or before, or a place that has a name already, is called so from now on."""
     words = without_determiners(slots["words"])
+    if _UNTIDY.intersection(words[-1:]) and "thing" in slots:
+        lost = Lost(f"I call no place a {words[-1]}")
+        lost.meant = f"tidy up the {' '.join(without_determiners(slots['thing']))}"
+        raise lost
     name, part, kind = " ".join(words), "", kind_named(" ".join(slots.get("thing", slots["words"])))
     if "spot" in slots:
         part = spot(builder, slots["spot"]).name

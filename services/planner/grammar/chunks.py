@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 from common.language.normalise import DETERMINERS, Words
 from common.language.quantities import duration
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.senses import LIVING, LONGEST_NAME, NO_NOUN
+from services.planner.grammar.senses import LIVING, LONGEST_NAME, NO_NOUN, is_alive
 from services.planner.grammar.vocabulary import Vocabulary
 
 MOST_WORDS = 6
@@ -85,7 +85,7 @@ def _unlisted(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
     for end in range(min(len(words), at + 1 + LONGEST_NAME), at + 1, -1):
         name = words[at + 1 : end]
         is_told = len(name) > 1 and any(word.endswith(("s", "ed")) for word in name[1:])
-        if not is_told and LIVING.isdisjoint(name) and vocabulary.unlisted(name) is not None:
+        if not is_told and _lifeless(name) and vocabulary.unlisted(name) is not None:
             return Chunk("thing", " ".join(words[at:end]), at, end)
     return None
 
@@ -105,11 +105,16 @@ def _bare(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
     stop = words.index(MARK, at) if MARK in words[at:] else len(words)
     end = next((i for i in range(at, stop) if words[i] in _BEHIND_BARE), stop)
     name = words[at:end]
-    if not _BEHIND_BARE.issuperset(words[end:stop]) or not LIVING.isdisjoint(name):
+    if not _BEHIND_BARE.issuperset(words[end:stop]) or not _lifeless(name):
         return None
     lasts = any(_time(words, i) for i in range(at, end))
     known = not lasts and 0 < len(name) <= LONGEST_NAME and vocabulary.unlisted(name, determined=False) is not None
     return Chunk("thing", f"the {' '.join(name)}", at, end) if known else None
+
+
+def _lifeless(name: Words) -> bool:
+    """Does it speak of nobody? A toy rabbit is nobody."""
+    return LIVING.isdisjoint(name) or (name[-1] in LIVING and not is_alive(name))
 
 
 def _plain(phrase: Phrase) -> bool:

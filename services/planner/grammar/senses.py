@@ -5,7 +5,7 @@ from importlib.resources import files
 import msgspec
 
 from common.floor_plan import Receptacle
-from common.language.normalise import DETERMINERS
+from common.language.normalise import DETERMINERS, Words
 
 ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
 OBJECT = frozenset({"thing", "object", "item"})
@@ -45,11 +45,22 @@ LIVING = frozenset(
     }
 )  # fmt: skip
 """Who is never picked up."""
+_FIGURES = TOYS | {
+    "stuffed", "plush", "cuddly", "soft", "teddy", "china", "ceramic", "porcelain", "wooden", "rubber", "plastic",
+    "glass", "knitted", "crocheted", "felt", "metal", "brass", "stone", "clay", "paper", "chocolate", "clockwork",
+    "inflatable", "lego", "squeaky",
+}  # fmt: skip
+"""Words before such a noun that make it a thing: `the toy rabbit`."""
 NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
 """Words that are part of no thing's name."""
 HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 ABSTRACT: frozenset[str] = frozenset((files(__package__) / "abstract_nouns.txt").read_text(encoding="utf-8").split())
 """Nouns of what cannot be carried: neither luck, which nobody could find, nor a piano."""
+
+
+def is_alive(noun: Words) -> bool:
+    """Is it somebody, or an animal, and no figure of one?"""
+    return noun[-1] in LIVING and _FIGURES.isdisjoint(noun)
 
 
 class Sense(msgspec.Struct, frozen=True):

@@ -6,7 +6,7 @@ from common.kinds import KINDS
 from common.language.normalise import DETERMINERS, Words, enumeration, without_determiners
 from common.language.noun_phrase import NUMBERS, PLURAL_PRONOUNS, PRONOUNS, Which
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.senses import LIVING, Sense
+from services.planner.grammar.senses import Sense, is_alive
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.choosing import choose, unseen
 from services.planner.reference.fits import fitting, unknown
@@ -133,7 +133,7 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
 def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     """A thing that nobody has listed or seen, by its own words."""
     label = " ".join((*phrase.colours, phrase.singular or phrase.noun))
-    if phrase.noun.split()[-1] in LIVING:
+    if is_alive(tuple(phrase.noun.split())):
         raise Refusal("I pick up neither people nor animals, and I do not look for them")
     spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
     if "the" in phrase.anchor[1:] and not spots:
