@@ -60,6 +60,7 @@ def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_pat
     assert run.processes() == []
 
 
+@pytest.mark.slow
 def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path) -> None:
     bad = tmp_path / "bad.wav"
     bad.write_text("no sound")

@@ -113,7 +113,7 @@ def test_up_shows_each_service_and_ctrl_c_leaves_nothing(run: Run) -> None:
     assert run.command("ps").returncode == 1
 
 
-@pytest.mark.parametrize("victim", ["up", "supervisord"])
+@pytest.mark.parametrize("victim", ["up", pytest.param("supervisord", marks=pytest.mark.slow)])
 def test_kill_9_of_either_leaves_no_orphan(run: Run, victim: str) -> None:
     up = run.up("--only", "router,sim")
     read_until(up, "Ctrl-C")

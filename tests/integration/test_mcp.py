@@ -71,6 +71,7 @@ async def read(client: "Client", uri: str) -> str | bytes:
     return base64.b64decode(content.blob)
 
 
+@pytest.mark.slow
 def test_without_a_robot_every_tool_says_so_and_what_is_no_phrase_is_refused(run: Run) -> None:
     async def talk() -> None:
         async with agent(run, "--connect", f"tcp/127.0.0.1:{run.port}") as client:

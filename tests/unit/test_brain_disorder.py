@@ -111,7 +111,7 @@ def check(bench: Bench, peers: Disorder) -> int:
     return len(delivered)
 
 
-@pytest.mark.parametrize("pipeline", ["fetch", "vla"])
+@pytest.mark.parametrize("pipeline", ["fetch", pytest.param("vla", marks=pytest.mark.slow)])
 def test_no_false_success_and_no_standstill(pipeline: Any) -> None:
     delivered = failed = 0
     for seed in range(12 if pipeline == "fetch" else 5):

@@ -73,6 +73,7 @@ def test_friction_that_goes_lets_it_slide_or_fall(seconds: float, kept: bool) ->
     assert (bench.sim.physics.model.geom_friction[pads] == friction).all(), "the pads are dry again"
 
 
+@pytest.mark.slow
 def test_a_jammed_finger_stays_and_comes_free() -> None:
     told: list[FaultReport] = []
     bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=3.0), told)

@@ -108,6 +108,7 @@ def test_a_misheard_command_is_another_one() -> None:
         assert case.rules[0].fields["text"] != case.command
 
 
+@pytest.mark.slow
 def test_rules_speak_of_what_their_service_publishes() -> None:
     rules = [r for suite in DRAWN for c in drawn(suite) for r in c.rules]
     rules += [r for c in cases("chaos", 150, 98) for r in c.rules]

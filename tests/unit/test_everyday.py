@@ -38,7 +38,7 @@ LEAST = {
     "03": Least(0.9, 0.9, 0),
     "04": Least(0.94, 0.94, 7),
     "05": Least(0.94, 0.94, 1),
-    "06": Least(0.83, 0.83, 1, slow=False),
+    "06": Least(0.83, 0.83, 1),
     "07": Least(0.94, 0.94, 9),
     "08": Least(0.94, 0.94, 0),
     "09": Least(0.94, 0.94, 0),
@@ -82,6 +82,7 @@ LEAST = {
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
 
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("number", [pytest.param(n, marks=[pytest.mark.slow] * row.slow) for n, row in LEAST.items()])
 def test_sentences_are_understood(number: str) -> None:
     rows, least = lists()[number], LEAST[number]

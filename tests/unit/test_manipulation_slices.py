@@ -118,6 +118,7 @@ def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch:
     assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"
 
 
+@pytest.mark.slow
 def test_a_wide_pot_is_held_by_its_handles_and_one_without_is_too_wide() -> None:
     """Turned about its axis its wall is nowhere narrow enough; a smooth one offers nothing thin and keeps its shape."""
     wall, rings = front((0.055, 0.055), -0.035, 0.035), np.arange(0.0, 0.056, 0.006)

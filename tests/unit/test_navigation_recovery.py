@@ -192,6 +192,7 @@ def walks_in(flat: Flat, since: float) -> list[Rectangle]:
     return [STUDY_DOOR_SHUT, Rectangle(2.5, -0.45, 0.3, 0.25), Rectangle(x, -0.85, 0.3, 0.3)]
 
 
+@pytest.mark.slow
 def test_who_stands_beside_a_box_in_the_only_door_is_no_thing_that_blocks_it() -> None:
     flat = Flat([STUDY_DOOR_SHUT])
     flat.ask("goto kitchen")

@@ -157,6 +157,7 @@ def test_a_recorded_command_is_understood_and_noise_is_not() -> None:
     assert node.result().goal_id == "a.1", "noise is no speech"
 
 
+@pytest.mark.slow
 def test_the_robot_understands_its_own_voice() -> None:
     node = Listener()
     spoken = node.bus.tap(topics.AUDIO_OUT)

@@ -103,6 +103,7 @@ def test_a_command_may_follow_the_wake_word_after_a_pause_but_only_one(robot: Ro
     assert len(robot.commands) == 1
 
 
+@pytest.mark.slow
 def test_a_command_may_pause_in_the_middle(robot: Robot, said: dict[str, Samples]) -> None:
     robot.hear(said["hey jarvis"])
     parts = [said["put the apple next to"], said["the red mug"], PAUSE]
