@@ -100,4 +100,4 @@ PAIRED = (
     r"(?:scissors|shears|clippers|secateurs|pliers|pincers|tweezers|tongs|(?:sun)?glasses|spectacles|goggles|binoculars|"
     r"(?:head|ear)phones|earbuds|trousers|jeans|shorts|tights|leggings|pyjamas|socks|shoes|slippers|boots|sandals|gloves)"
 )
-"""What is one thing to somebody who asks for a pair of it."""
+"""Nouns of which a pair is one thing: `a pair of scissors`."""

@@ -23,7 +23,7 @@ _REPAIR = re.compile(
 _TAKEN_BACK = re.compile(
     r"(?:[.;!?]\s*)+(?:no,? )?(?:(?:scratch|strike|scrap) that|(?:my )?final answer)(?:\s*[.;:!,])+\s*(?=\w)"
 )
-"""The same as a sentence of its own."""
+"""A repair that is a sentence of its own: `the can. scratch that.`"""
 _AFTERTHOUGHT = re.compile(
     r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
     r"be precise|actually)$"

@@ -11,7 +11,7 @@ _NUMBER = rf"(?:a|an|and|of|about|around|another|just|maybe|\d+|{'|'.join(NUMBER
 DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
 """Words of a length of time, as `quantities.duration` reads them."""
 THERE = r"(?:when|once|as soon as) you(?: are| have)? (?:got there|get there|there|arrived?)"
-"""At the end of a way."""
+"""Says that something is for when the robot has arrived: `once you are there`."""
 _APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
 _LATER = "(?:from now|time|later|on)"
 _PASSED = (

@@ -7,7 +7,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
-from common.messages import AROUND, GRIPPER, SENSELESS, PlanStep
+from common.messages import AROUND, GRIPPER, PlanStep
 from common.naming.part_names import is_for_people
 from common.naming.words import Destination
 from services.planner.choice_points import ChoicePoints
@@ -15,9 +15,6 @@ from services.planner.config import PlannerConfig
 from services.planner.grammar.senses import Spot
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import BelievedObject, World
-
-NOT_UNDERSTOOD = SENSELESS
-"""How the reason begins against words that fit no wording."""
 
 
 class Refusal(Exception):
@@ -27,7 +24,9 @@ class Refusal(Exception):
 class Lost(Refusal):
     """A refusal of words that may mean something else than what they were taken for; `meant`: in plainer words."""
 
-    meant = ""
+    def __init__(self, reason: str, meant: str = "") -> None:
+        super().__init__(reason)
+        self.meant = meant
 
 
 class LookFirst(Exception):

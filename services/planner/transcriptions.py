@@ -4,8 +4,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from functools import cache
 
-from common.messages import ActionPlan, PlanStep, Transcription
-from services.planner.plan_builder import NOT_UNDERSTOOD
+from common.messages import SENSELESS, ActionPlan, PlanStep, Transcription
 
 PLANNED, UNLISTED, ANSWERED, GUESSED, REFUSED, NOTHING = 0.0, 1.5, 1.5, 2.0, 3.0, 4.0
 """How much rarer than a command that is understood, of things that are known, is said to the robot what names others,
@@ -59,7 +58,7 @@ def cost(found: ActionPlan, known: Collection[str]) -> float:
         return UNLISTED if unlisted else PLANNED
     if found.suggestion:
         return GUESSED
-    return NOTHING if found.detail.startswith(NOT_UNDERSTOOD) else REFUSED
+    return NOTHING if found.detail.startswith(SENSELESS) else REFUSED
 
 
 def _done(found: ActionPlan, plan: Planner) -> list[PlanStep]:

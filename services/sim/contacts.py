@@ -72,7 +72,7 @@ class ContactLog:
         count = data.ncon
         view = self._views.get(count)
         if view is None:
-            # ContactLog stand at the start of MjData's arena: the view of so many stays valid for good. Looking the
+            # Contacts stand at the start of MjData's arena: the view of so many stays valid for good. Looking the
             # array up anew takes longer than all that follows.
             view = self._views[count] = data.contact.geom
         pattern = view.tobytes()

@@ -103,8 +103,7 @@ class Physics(Body):
         for robot in self.robots:
             robot.fingers.hold()
             robot.contacts.forget()
-            robot.contacts.look(self.data)
-        self._take_out_creep()
+        self._look_for_grips()
         self.obstacles.reset()
 
     def reseed(self, seed: int) -> None:
@@ -139,6 +138,12 @@ class Physics(Body):
                     robot.contacts.step(data, now + number * DT / steps)
             if not rests:
                 self._take_out_creep()
+
+    def _look_for_grips(self) -> None:
+        """Have friction as the contacts of a state ask for that no step has led to."""
+        for robot in self.robots:
+            robot.contacts.look(self.data)
+        self._take_out_creep()
 
     def _take_out_creep(self) -> None:
         """Have the next step's friction free of creep if a robot holds something."""
@@ -175,6 +180,4 @@ class Physics(Body):
         for robot in self.robots:
             robot.fingers.hold()
         mujoco.mj_forward(self.model, self.data)
-        for robot in self.robots:
-            robot.contacts.look(self.data)
-        self._take_out_creep()
+        self._look_for_grips()

@@ -2,8 +2,7 @@
 
 import pytest
 
-from common.messages import ActionPlan, PlanStep, Transcription
-from services.planner.plan_builder import NOT_UNDERSTOOD
+from common.messages import SENSELESS, ActionPlan, PlanStep, Transcription
 from services.planner.transcriptions import chosen
 from tests.unit.test_planner_service import Desk, targets
 
@@ -19,7 +18,7 @@ def refused(why: str, suggestion: str = "") -> ActionPlan:
 PLANS = {
     "fetch the mug": fetch("mug"), "get the mug": fetch("mug"), "fetch the mud": fetch("mud"),
     "fetch the cup": fetch("cup"), "fetch the jug": refused("I see no jug"),
-    "fletch the mug": refused(f"{NOT_UNDERSTOOD} fletch", "fetch the mug"), "fish the mug": refused(NOT_UNDERSTOOD),
+    "fletch the mug": refused(f"{SENSELESS} fletch", "fetch the mug"), "fish the mug": refused(SENSELESS),
 }  # fmt: skip
 PLANS["what fetch the mug"] = ActionPlan(request_id="", steps=[PlanStep(action="say", text="I know of no mug.")])
 KNOWN = frozenset({"mug", "cup"})

@@ -1,6 +1,7 @@
 """What is said to a robot that is at work: stop, something for later, something else instead, or a question. Pure."""
 
 import re
+from collections.abc import Sequence
 from typing import Literal
 
 import msgspec
@@ -137,9 +138,9 @@ def _control(said: str, words: str) -> Interjection | None:
     now: tuple[Action, ...] = ("stop", "cancel") if LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
-    first, _, reason = words.partition(", ")
     if _stopped_in_part(words):
         return Interjection("stop", said)
+    first, _, reason = words.partition(", ")
     if (_is_news(reason) or _LEFT.match(reason)) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
     if _waits_behind_a_warning(words):
@@ -153,15 +154,18 @@ def _stopped_in_part(words: str) -> bool:
     """Is the last part a stop, or one among warnings: `oi, brakes on, the baby is on the floor`?"""
     parts = words.split(", ")
     others = [part for part in parts if not asks_for(part, "stop")]
-    warned = all(_WARNED.match(part) or _is_news(part) for part in others)
-    return parts[-1] not in others or (warned and len(others) < len(parts))
+    return parts[-1] not in others or (len(others) < len(parts) and _warn(others))
 
 
 def _waits_behind_a_warning(words: str) -> bool:
     """`mind the cat, hang on`: is it to wait, for what the parts before tell of?"""
     *told, last = words.split(", ")
-    warned = all(_WARNED.match(part) or _is_news(part) for part in told)
-    return bool(told) and warned and _waits(last)
+    return bool(told) and _warn(told) and _waits(last)
+
+
+def _warn(parts: Sequence[str]) -> bool:
+    """Is each part a warning, or news?"""
+    return all(_WARNED.match(part) or _is_news(part) for part in parts)
 
 
 def _waits(words: str) -> bool:

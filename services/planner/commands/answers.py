@@ -4,11 +4,11 @@ from common.language.exchange import PREPOSITIONS
 from common.language.normalise import Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS, WHICH, related
 from common.language.pattern import Slots
-from common.messages import PlanStep
+from common.messages import SENSELESS, PlanStep
 from services.planner.commands.telling import a, be, capital, not_after_moving, place_of
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import ANY, Sense
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import unknown
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent
@@ -136,7 +136,7 @@ def extreme(builder: PlanBuilder, slots: Slots) -> None:
         _told_one_by_one(builder, [m.object for m in referents(builder, ("all", *words, *noun))])
         return
     else:
-        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
+        raise Lost(f"{SENSELESS} {' '.join(slots['words'])!r}")
     meant = referent(builder, asked).object
     if not meant.seen:
         raise Refusal(f"I have not seen that {' '.join(noun) or 'thing'}")
@@ -149,7 +149,7 @@ def compare(builder: PlanBuilder, slots: Slots) -> None:
     words = slots["words"]
     which = WHICH.get(words[-1])
     if which is None or len(words) > 1:
-        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
+        raise Lost(f"{SENSELESS} {' '.join(words)!r}")
     one, other = (referent(builder, slots[name]).object for name in ("thing", "spot"))
     for item in (one, other):
         if not item.seen:

@@ -4,11 +4,11 @@ from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS, enumeration
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.pattern import Slots
-from common.messages import PlanStep
+from common.messages import SENSELESS, PlanStep
 from services.planner.commands.hand import take
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent, handled_before
@@ -30,7 +30,7 @@ def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
     if isinstance(phrase, Phrase) and phrase.but and phrase.sense.every and not (phrase.colours or phrase.which):
         raise Refusal("you said what you do not want, but not what you want")
     if slots["thing"][0] in builder.world.household.words.mass:
-        raise Lost(f"{NOT_UNDERSTOOD} what to do with the {slots['thing'][0]}")
+        raise Lost(f"{SENSELESS} what to do with the {slots['thing'][0]}")
     last = builder.vocabulary.noun(slots["thing"][-1])
     named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in builder.vocabulary.colours
     if last is None and not named and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):

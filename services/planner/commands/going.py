@@ -5,10 +5,11 @@ import re
 from common.language.normalise import DETERMINERS, Words
 from common.language.pattern import Slots
 from common.language.quantities import LONGEST, duration, number
+from common.messages import SENSELESS
 from services.planner.commands.telling import capital
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.resolve import referent, referents
 
@@ -75,7 +76,7 @@ def count(builder: PlanBuilder, slots: Slots) -> None:
 def _wait(builder: PlanBuilder, said: Words) -> None:
     seconds = duration(said) if said else 0.0
     if seconds is None:
-        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(said)!r}")
+        raise Lost(f"{SENSELESS} {' '.join(said)!r}")
     if seconds > LONGEST:
         raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
     builder.wait(seconds)

@@ -19,8 +19,6 @@ CLEARLY = 0.6
 """Share of the visits from which a thing is usually at one place (chosen)."""
 TOLD = 3
 """Places told at once (chosen: more nobody listens to)."""
-
-
 _UNTIDY = frozenset({"mess", "disgrace", "tip", "pigsty", "sty", "shambles", "state", "dump", "disaster", "nightmare"})
 """What somebody calls a place that is to be tidied."""
 
@@ -30,9 +28,8 @@ def name_place(builder: PlanBuilder, slots: Slots) -> None:
     """What the robot stands in or before, or a place that has a name already, is called so from now on."""
     words = without_determiners(slots["words"])
     if _UNTIDY.intersection(words[-1:]) and "thing" in slots:
-        lost = Lost(f"I call no place a {words[-1]}")
-        lost.meant = f"tidy up the {' '.join(without_determiners(slots['thing']))}"
-        raise lost
+        place = " ".join(without_determiners(slots["thing"]))
+        raise Lost(f"I call no place a {words[-1]}", f"tidy up the {place}")
     name, part, kind = " ".join(words), "", kind_named(" ".join(slots.get("thing", slots["words"])))
     if "spot" in slots:
         part = spot(builder, slots["spot"]).name
@@ -53,9 +50,8 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     )
     whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but or phrase.count > 1)
     if things[0] in ONES or not (plural and whole):
-        lost = Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")
-        lost.meant = f"{' '.join(things)} always belong on {' '.join(slots['spot'])}"
-        raise lost
+        said, place = " ".join(things), " ".join(slots["spot"])
+        raise Lost(f"I do not know which {said} you mean; say from now on for all", f"{said} always belong on {place}")
     rule_always(builder, slots)
 
 

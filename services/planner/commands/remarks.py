@@ -2,11 +2,11 @@
 
 from common.language.normalise import without_determiners
 from common.language.pattern import Slots
-from common.messages import PlanStep
+from common.messages import SENSELESS, PlanStep
 from common.naming.names import normalise
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LONGEST_NAME
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import speak_of
 from services.planner.reference.resolve import referents
@@ -27,7 +27,7 @@ def remark(builder: PlanBuilder, slots: Slots) -> None:
 def mention(builder: PlanBuilder, slots: Slots) -> None:
     """A thing that is spoken of next as "it"; where it is said to be is where it is looked for."""
     if "and" in slots.get("words", ()):
-        raise Lost(f"{NOT_UNDERSTOOD} that")
+        raise Lost(f"{SENSELESS} that")
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     try:
         speak_of(builder, referents(builder, words))
@@ -59,7 +59,7 @@ def teach_owned(builder: PlanBuilder, slots: Slots) -> None:
     """`that's grandma's cup` of what the hand holds or has just brought; of nothing else it tells a name."""
     owned = any(word.endswith("'s") for word in slots["words"])
     if not owned or (builder.world.held is None and builder.world.history.last is None):
-        raise Lost(f"{NOT_UNDERSTOOD} what {' '.join(slots['words'])!r} has to do with it")
+        raise Lost(f"{SENSELESS} what {' '.join(slots['words'])!r} has to do with it")
     teach(builder, slots)
 
 

@@ -6,7 +6,7 @@ from common.language.addressee import addressee
 from common.language.discourse import commands
 from common.language.lexicon import COMMANDING
 from common.language.normalise import enumeration
-from common.messages import ActionPlan, PlanStep, RejectedPlan
+from common.messages import SENSELESS, ActionPlan, PlanStep, RejectedPlan
 from services.planner.choice_points import ChoicePoints, every
 from services.planner.config import PlannerConfig
 from services.planner.grammar.accounting import CONDITIONS, as_command, unaccounted
@@ -14,7 +14,7 @@ from services.planner.grammar.attempts import Attempts, Suggestion
 from services.planner.grammar.guess import Guess, contradicted
 from services.planner.grammar.sentences import MAX_CHARACTERS
 from services.planner.grammar.vocabulary import Vocabulary
-from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, Refusal, same
+from services.planner.plan_builder import LookFirst, Refusal, same
 from services.planner.semantic.forms import tokens
 from services.planner.world import World
 
@@ -81,7 +81,7 @@ def plan(
 def _ignored(clauses: Sequence[str], steps: list[PlanStep], world: World, vocabulary: Vocabulary) -> str:
     """What of the clauses a plan leaves aside, so that it is asked about first; "" where it is nothing."""
     ignored = unaccounted(clauses, steps, world, vocabulary)
-    return f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it" if ignored else ""
+    return f"{SENSELESS} what {enumeration(list(map(repr, ignored)))} has to do with it" if ignored else ""
 
 
 def _unlikely(clauses: Sequence[str], steps: Sequence[PlanStep], likely: Guess, world: World) -> str:
@@ -92,7 +92,7 @@ def _unlikely(clauses: Sequence[str], steps: Sequence[PlanStep], likely: Guess, 
     if world.history.last is not None and COMMANDING.isdisjoint(words):  # the guess does not know what it goes on with
         return ""
     known = {thing.label for thing in (*world.objects, *world.specs)}
-    return f"{NOT_UNDERSTOOD} for certain what I should do" if contradicted(words, steps, likely, known) else ""
+    return f"{SENSELESS} for certain what I should do" if contradicted(words, steps, likely, known) else ""
 
 
 def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:

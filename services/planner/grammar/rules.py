@@ -6,6 +6,7 @@ from common.language.meaning import readings
 from common.language.normalise import Words
 from common.language.pattern import Slots
 from common.language.wording import Action, Kind
+from common.messages import SENSELESS
 from services.planner.commands import (
     about_itself,
     answers,
@@ -20,7 +21,7 @@ from services.planner.commands import (
     remarks,
     tidying,
 )
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "open_hand": hand.open_hand,
@@ -119,7 +120,7 @@ def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> Refusal | N
     if "command" in kinds and (known := query_forms.answer(words, builder)) is not None:
         builder.say(known)
         return None
-    reason: Refusal = NoWording(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
+    reason: Refusal = NoWording(f"{SENSELESS} {' '.join(words)!r}")
     for wording, slots in readings(words, *kinds):
         trial = builder.fork()
         try:

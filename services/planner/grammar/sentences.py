@@ -9,14 +9,14 @@ from common.language.lexicon import A_WISH, COMMANDING
 from common.language.meaning import asks_for
 from common.language.normalise import Words
 from common.language.wording import COURTESIES
-from common.messages import PlanStep
+from common.messages import SENSELESS, PlanStep
 from services.planner.commands import answers
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.mention import expected, note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.rules import ACTIONS
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 
 MAX_CHARACTERS = 2000
@@ -129,7 +129,7 @@ def _steps(builder: PlanBuilder) -> list[PlanStep]:
     if not builder.steps and builder.need:
         read_clause(("bring", "me", *builder.need.split()), builder, alone=True)
     if not builder.steps:
-        raise Lost(f"{NOT_UNDERSTOOD} what I should do")
+        raise Lost(f"{SENSELESS} what I should do")
     if all(step.action == "find" for step in builder.steps):
         answers.found(builder)
     return builder.steps

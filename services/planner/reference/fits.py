@@ -6,9 +6,10 @@ import msgspec
 
 from common.language.normalise import DETERMINERS, Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
+from common.messages import SENSELESS
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LONGEST_NAME
-from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.pronouns import pronoun
 from services.planner.world import BelievedObject
 
@@ -71,7 +72,7 @@ def _labels(builder: PlanBuilder, phrase: Phrase) -> set[str]:
 def unknown(builder: PlanBuilder, words: Words, noun: str) -> Refusal:
     """Why a phrase means nothing, with what there is instead."""
     if len(noun.split()) > LONGEST_NAME or DETERMINERS & set(noun.split()):
-        return Lost(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
+        return Lost(f"{SENSELESS} {' '.join(words)!r}")
     *front, last = noun.split() or [""]
     known = builder.vocabulary.noun(last)
     if front and known is not None and not known[0].every:
