@@ -48,6 +48,11 @@ RELATIONS: tuple[tuple[str, Relation], ...] = (
     ("off", "on"), ("on", "on"), ("in", "on"), ("at", "on"),
 )  # fmt: skip
 """Words between an object and what it is related to, longer ones first."""
+_RELATED = {
+    first: [(words, relation) for spoken, relation in RELATIONS if (words := tuple(spoken.split()))[0] == first]
+    for first in {spoken.split()[0] for spoken, _ in RELATIONS}
+}
+"""The same by their first words."""
 SIDES: dict[str, Which] = {
     "on the left": "left", "from the left": "left", "to the left": "left", "on the left side": "left",
     "on the right": "right", "from the right": "right", "to the right": "right", "on the right side": "right",
@@ -61,6 +66,7 @@ _BUT = (
     "besides", "excluding", "without", "but", "not",
 )  # fmt: skip
 """Words before what is left out."""
+_EXCEPT = tuple(tuple(spoken.split()) for spoken in _BUT)
 _UNSEEN = (
     "dirty clean empty full used old new nice fresh cold hot warm favourite favorite normal regular ordinary own "
     "lovely pretty good whole remaining same usual more certain single stupid silly dumb "
@@ -145,10 +151,9 @@ def without_exceptions(words: Words) -> tuple[Words, tuple[Words, ...]]:
     """Words before `except the red one and the can`, and each of the phrases that follow it."""
     for at in range(1, len(words)):
         rest = without_clause(words[at:])
-        for spoken in _BUT:
-            width = len(spoken.split())
-            if " ".join(rest[:width]) == spoken and len(rest) > width:
-                return words[:at], _listed(rest[width:])
+        for spoken in _EXCEPT:
+            if rest[: len(spoken)] == spoken and len(rest) > len(spoken):
+                return words[:at], _listed(rest[len(spoken) :])
     return words, ()
 
 
@@ -191,7 +196,12 @@ def related(words: Words) -> Iterator[tuple[Words, Relation, Words]]:
     """Every (object, relation, anchor) reading of a phrase like `the mug that is on the table`."""
     for at in range(1, len(words)):
         rest = without_clause(words[at:])
-        for spoken, relation in RELATIONS:
-            width = len(spoken.split())
-            if " ".join(rest[:width]) == spoken and len(rest) > width:
-                yield words[:at], relation, rest[width:]
+        for relation, width in relations_at(rest):
+            yield words[:at], relation, rest[width:]
+
+
+def relations_at(words: Words) -> Iterator[tuple[Relation, int]]:
+    """The relations with whose words the words begin and go on, and how many these are."""
+    for spoken, relation in _RELATED.get(words[0], ()):
+        if words[: len(spoken)] == spoken and len(words) > len(spoken):
+            yield relation, len(spoken)

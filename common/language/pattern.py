@@ -1,6 +1,8 @@
 """Sentence patterns: `(a | b)`, `[optional]` and `<slot>` over words, as a syntax tree and as a matcher. Pure.
 
-The planner matches sentences against them, speech compiles them to the grammar that its recogniser searches.
+The planner matches sentences against them, speech compiles them to the grammar that its recogniser searches. The
+matcher is a nondeterministic automaton (Thompson, "Regular expression search algorithm", 1968) that knows of each state
+with which words it goes on, so that a slot ends only where the rest may begin.
 """
 
 import re
@@ -99,40 +101,83 @@ class Pattern:
 
     def __init__(self, pattern: str) -> None:
         self.tree = parse(pattern)
-        self._first = first_words(self.tree)
+        self._state = _compiled(self.tree, _END)
         self._needed = needed(self.tree)
 
     def matches(self, words: Words) -> Iterator[Slots]:
         """Every reading of the whole sentence, shorter first slots first."""
-        if self._first & {"", ANY, *words[:1]} and (not self._needed or not self._needed.isdisjoint(words)):
-            for end, slots in _match(self.tree, words, 0, {}):
-                if end == len(words):
-                    yield slots
+        if not self._needed or not self._needed.isdisjoint(words):
+            yield from self._state.readings(words, 0, {})
 
 
-def _match(node: Node, words: Words, at: int, slots: Slots) -> Iterator[tuple[int, Slots]]:
-    """(end, slots) of every way in which `node` fits the words from `at` on."""
+class _State:
+    """What is left of a pattern; `first`: the words with which that may begin, ANY among them, "" for nothing more."""
+
+    first: frozenset[str]
+
+    def readings(self, words: Words, at: int, slots: Slots) -> Iterator[Slots]:
+        """Every way in which the words from `at` on are all of it, in the order of the options."""
+        raise NotImplementedError
+
+    def may_begin(self, words: Words, at: int) -> bool:
+        return (words[at] in self.first or ANY in self.first) if at < len(words) else "" in self.first
+
+
+class _End(_State):
+    first = frozenset({""})
+
+    def readings(self, words: Words, at: int, slots: Slots) -> Iterator[Slots]:
+        if at == len(words):
+            yield slots
+
+
+_END = _End()
+
+
+class _OneWord(_State):
+    def __init__(self, text: str, then: _State) -> None:
+        self._text, self._then, self.first = text, then, frozenset({text})
+
+    def readings(self, words: Words, at: int, slots: Slots) -> Iterator[Slots]:
+        if at < len(words) and words[at] == self._text:
+            yield from self._then.readings(words, at + 1, slots)
+
+
+class _Name(_State):
+    first = frozenset({ANY})
+
+    def __init__(self, name: str, then: _State) -> None:
+        self._name, self._then = name, then
+
+    def readings(self, words: Words, at: int, slots: Slots) -> Iterator[Slots]:
+        for end in range(at + 1, len(words) + 1):
+            if self._then.may_begin(words, end):
+                yield from self._then.readings(words, end, {**slots, self._name: words[at:end]})
+
+
+class _Fork(_State):
+    def __init__(self, options: list[_State]) -> None:
+        self._options, self.first = options, frozenset[str]().union(*(option.first for option in options))
+
+    def readings(self, words: Words, at: int, slots: Slots) -> Iterator[Slots]:
+        for option in self._options:
+            if option.may_begin(words, at):
+                yield from option.readings(words, at, slots)
+
+
+def _compiled(node: Node, then: _State) -> _State:
+    """The node and what follows it as a chain of states, each of which knows how it may begin."""
     match node:
         case Word(text):
-            if at < len(words) and words[at] == text:
-                yield at + 1, slots
+            return _OneWord(text, then)
         case Slot(name):
-            for end in range(at + 1, len(words) + 1):
-                yield end, {**slots, name: words[at:end]}
+            return _Name(name, then)
         case Either(options):
-            for option in options:
-                yield from _match(option, words, at, slots)
+            return _Fork([_compiled(option, then) for option in options])
         case Sequence(parts):
-            yield from _match_all(parts, 0, words, at, slots)
-
-
-def _match_all(parts: tuple[Node, ...], depth: int, words: Words, at: int, slots: Slots) -> Iterator[tuple[int, Slots]]:
-    """The same for `parts` from `depth` on, one after the other."""
-    if depth == len(parts):
-        yield at, slots
-        return
-    for end, found in _match(parts[depth], words, at, slots):
-        yield from _match_all(parts, depth + 1, words, end, found)
+            for part in reversed(parts):
+                then = _compiled(part, then)
+            return then
 
 
 def words_of(node: Node) -> set[str]:

@@ -10,13 +10,13 @@ from common.language.normalise import DETERMINERS, Words, without_determiners
 from common.language.noun_phrase import (
     CURSES,
     NUMBERS,
-    RELATIONS,
     SIDES,
     UNSEEN,
     WHICH,
     Relation,
     Which,
     related,
+    relations_at,
     with_contents,
     without_clause,
     without_exceptions,
@@ -132,11 +132,7 @@ def _coloured(words: Words, vocabulary: Vocabulary) -> tuple[str, ...]:
 
 def _noun_of(words: Words) -> str:
     """The thing that was named, as far as one can tell."""
-    for at in range(1, len(words)):
-        rest = " ".join(words[at:])
-        if any(rest.startswith(f"{spoken} ") for spoken, _ in RELATIONS):
-            words = words[:at]
-            break
+    words = next((words[:at] for at in range(1, len(words)) if any(True for _ in relations_at(words[at:]))), words)
     while words and (words[0] in DETERMINERS or words[0] in ("all", "both", "of")):
         words = words[1:]
     return " ".join(words)

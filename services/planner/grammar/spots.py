@@ -19,6 +19,8 @@ class Spots:
     def __init__(self, household: Household, told: Iterable[str], colours: Mapping[str, str]) -> None:
         self._household, self.colours = household, dict(colours)
         self._places = self._standing(household, told)
+        self._called = [(r, normalise(r.name), frozenset(map(normalise, r.aliases))) for r in household.receptacles]
+        self._found: dict[tuple[Words, str], list[Spot]] = {}
 
     def _standing(self, household: Household, told: Iterable[str]) -> dict[str, Spot]:
         spots = {normalise(p): Spot(p) for p in told if household.receptacle(p) is None}
@@ -31,10 +33,16 @@ class Spots:
 
     def spot(self, words: Words, room: str = "") -> list[Spot]:
         """Every place that the words can mean, the best alone when one is meant by name; [] if unknown."""
+        key = words, room  # the same spans of a sentence come again and again
+        if key not in self._found:
+            self._found[key] = self._spot(words, room)
+        return self._found[key]
+
+    def _spot(self, words: Words, room: str) -> list[Spot]:
         phrase = " ".join(without_determiners(words))
         if not phrase:
             return []
-        if whole := [r for r in self._household.receptacles if not room and phrase == normalise(r.name)]:
+        if whole := [r for r, name, _ in self._called if not room and phrase == name]:
             return [Spot(whole[0].name, receptacle=whole[0])]
         for preposition in ("in", "of", "from", "at"):
             head, found, tail = phrase.partition(f" {preposition} ")
@@ -55,15 +63,13 @@ class Spots:
             return self.spot(without_determiners(words)[1:], room)
         if not room and (place := self._places.get(phrase)):
             return [place]
-        named = [r for r in self._household.receptacles if phrase in map(normalise, (r.name, *r.aliases))]
+        named = [r for r, name, aliases in self._called if phrase == name or phrase in aliases]
         colour, _, rest = phrase.partition(" ")
         meant = self.colours.get(colour)
         kin = [
             r
-            for r in self._household.receptacles
-            if r.kind == phrase
-            or f" {normalise(r.name)}".endswith(f" {phrase}")
-            or (meant and _coloured(r, meant, rest))
+            for r, name, _ in self._called
+            if r.kind == phrase or f" {name}".endswith(f" {phrase}") or (meant and _coloured(r, meant, rest))
         ]
         if room:
             named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]

@@ -35,6 +35,7 @@ class Vocabulary(Spots):
     def __init__(self, world: World, config: PlannerConfig) -> None:
         self.new_nouns = False
         self.phrases: dict[tuple[bool, Words], Any] = {}
+        self.ranked: dict[tuple[bool, Words], Any] = {}
         household, known = world.household, [*world.specs, *world.objects]
         self.before = normalise(world.history.last.command) if world.history.last is not None else ""
         self.situation = _situation(world)
@@ -45,6 +46,7 @@ class Vocabulary(Spots):
         super().__init__(household, world.places, colours)
         self._kind_of = {t.label: t.kind for t in known}
         self._nouns: dict[str, Sense] = {}
+        self._meant: dict[str, tuple[Sense, str, bool] | None] = {}
         self._printed: dict[str, set[str]] = {}
         self._aliases(household)
         for item in known:
@@ -97,6 +99,11 @@ class Vocabulary(Spots):
 
     def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
         """(meaning, singular form, is it a plural) of a noun without colours; None if unknown."""
+        if phrase not in self._meant:
+            self._meant[phrase] = self._noun(phrase)
+        return self._meant[phrase]
+
+    def _noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
         if phrase in WHOLE:
             return Sense(every=True), "thing", phrase in ("everything", "all", "mess", "all of it", "it all")
         if "'" in phrase and (taught := self._nouns.get(unmarked(phrase))) is not None:

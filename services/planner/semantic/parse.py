@@ -46,14 +46,17 @@ def parse(words: Words, vocabulary: Vocabulary) -> list[Part]:
 
     @cache
     def best(begin: int) -> tuple[float, list[Part]]:
-        options = [_option(words, begin, len(words), ranked)]
-        more = _share(ranked(begin, len(words)), OTHER)
+        found = _option(words, begin, len(words), ranked)
+        more = math.log(_share(ranked(begin, len(words)), OTHER))
         for cut in cuts:
+            if more <= found[0]:  # no part adds to it: the logarithm of a probability
+                break
             if cut > begin and _trimmed(words[begin:cut]) and _trimmed(words[cut:]):
                 value, parts = _option(words, begin, cut, ranked)
-                after, others = best(cut)
-                options.append((math.log(more) + value + after, [*parts, *others]))
-        return max(options, key=lambda option: option[0])
+                if more + value > found[0]:
+                    after, others = best(cut)
+                    found = max(found, (more + value + after, [*parts, *others]), key=lambda option: option[0])
+        return found
 
     return best(0)[1]
 

@@ -37,6 +37,14 @@ def named(words: Words, vocabulary: Vocabulary) -> list[Chunk]:
 
 def rank(words: Words, vocabulary: Vocabulary) -> list[Ranked]:
     """All candidates of a sentence in words and marks (`forms.tokens`), the likeliest first."""
+    key = vocabulary.new_nouns, words  # parts of a sentence are asked about again in its other readings
+    if key not in vocabulary.ranked:
+        vocabulary.ranked[key] = _rank(words, vocabulary)
+    ranked: list[Ranked] = vocabulary.ranked[key]
+    return ranked
+
+
+def _rank(words: Words, vocabulary: Vocabulary) -> list[Ranked]:
     found = named(words, vocabulary)
     meant = candidates(words, found, vocabulary.before)
     scores = TEMPERED * _shipped().scores(words, found, meant, vocabulary.situation)
