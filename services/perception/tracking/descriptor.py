@@ -11,6 +11,7 @@ from common.messages import End, ShapeFamily
 from common.naming.likeness import TAKEN_FOR
 from services.perception.detection import Detection
 from services.perception.shapes.measurement import LEVEL
+from services.perception.tracking.registration import unlike
 from services.perception.unlisted import MOST_POINTS, thinned
 from services.perception.views import colour
 
@@ -54,9 +55,9 @@ class Descriptor:
     firm: str = ""
     nearest: float = math.inf
 
-    def add(self, d: Detection, weight: float, moved: bool, middle: Vec3) -> None:
+    def add(self, d: Detection, weight: float, moved: bool, was: Vec3, now: Vec3) -> None:
         """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold;
-        `middle` [map]: where the object is in that view, so that views laid one over another do not blur it.
+        `was`, `now` [map]: where the object was believed to be before that view, and is with it.
         """
         old = self.shape
         # Past the ridge of a carton one looks as well.
@@ -76,20 +77,25 @@ class Descriptor:
             share = self.spread**2 / (self.spread**2 + spread**2)
             self.size = _between(self.size, _aligned(d, self.yaw), share)
             self.spread = max(LEAST_SPREAD, self.spread * math.sqrt(1 - share))
-        self._add_points(d, d.points - middle, moved)
+        self._add_points(d, was, now, moved)
 
     def set_down(self) -> None:
         """The hand has let go: how it rests, and what shape it shows so, is to be seen anew."""
         self.shapes, self.ends, self.spread = {}, {}, 0.0
 
-    def _add_points(self, d: Detection, points: Array, moved: bool) -> None:
+    def _add_points(self, d: Detection, was: Vec3, now: Vec3, moved: bool) -> None:
         """Views of like noise are merged; what was seen from much farther blurs what was seen from near."""
-        if not len(points):
+        if not len(d.points):
             return
+        # From its own middle: so views laid one over another do not blur it.
+        seen = d.points - (d.position if d.whole else now)
         if moved or not len(self.points) or (d.whole and d.distance < self.nearest / BLURRED):
-            self.points, self.nearest = points, d.distance
+            self.points, self.nearest = seen, d.distance
         elif d.distance < self.nearest * BLURRED:
-            self.points, self.nearest = _merged(self.points, points), min(self.nearest, d.distance)
+            # Taken for another shape it has another middle: then it is where it was on the map.
+            on_map = self.points + np.subtract(was, now), d.points - now
+            self.points = _merged(*min((self.points, seen), on_map, key=lambda pair: unlike(*pair)))
+            self.nearest = min(self.nearest, d.distance)
 
     def turned(self, d: Detection) -> float:
         """The yaw [rad] of a detection, by which its extents are in the order of `size`."""

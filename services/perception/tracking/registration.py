@@ -7,6 +7,7 @@ be, and the view sees what is behind it, counts as well: so the outline of a fla
 
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -45,9 +46,8 @@ def shift(believed: Array, seen: Array, view: View) -> Array | None:
     tree, seen, believed = cKDTree(believed), _some(seen), _some(believed)
 
     def costs(moved: Array) -> Array:
-        apart, _ = tree.query(seen - moved[:, None], distance_upper_bound=APART)
-        far = np.square(np.minimum(apart, APART) / APART).mean(axis=1)
         stays = STAYS * np.square(moved).sum(axis=1) / FARTHEST**2
+        far = _unlike(tree, seen - moved[:, None])
         return np.asarray(far + _empty(believed + moved[:, None], view) + stays)
 
     best = np.zeros(3)
@@ -62,6 +62,17 @@ def shift(believed: Array, seen: Array, view: View) -> Array | None:
                 return None
     apart, _ = tree.query(seen - best, distance_upper_bound=APART)
     return best if float(np.isfinite(apart).mean()) >= EXPLAINED else None
+
+
+def unlike(believed: Array, seen: Array) -> float:
+    """How badly points (m, 3) lie on those (n, 3) of earlier views: 0 when all have a counterpart, 1 when none has."""
+    return float(_unlike(cKDTree(believed), _some(seen)))
+
+
+def _unlike(tree: Any, seen: Array) -> Array:
+    """That of points (..., m, 3)."""
+    apart, _ = tree.query(seen, distance_upper_bound=APART)
+    return np.asarray(np.square(np.minimum(apart, APART) / APART).mean(axis=-1))
 
 
 def _empty(points: Array, view: View) -> Array:

@@ -121,12 +121,12 @@ def see(track: Track, detection: Detection, now: float, left: bool = True) -> No
         share = weight / track.weight
     if d.whole:
         track.clearest = max(track.clearest, weight)
-    old, new = np.array(track.position), np.array(d.position)
-    x, y, z = (float(v) for v in old + share * (new - old))
+    was, new = track.position, np.array(d.position)
+    x, y, z = (float(v) for v in was + share * (new - was))
     track.position, track.on = (x, y, z), d.on
     # Close looks count more, slivers less, and old mistakes fade.
     evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance)) * (1.0 if d.whole else d.share)
-    track.looks.add(d, evidence, fell or shift > MOVED, d.position if d.whole else track.position)
+    track.looks.add(d, evidence, fell or shift > MOVED, was, track.position)
     guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
     if fell or (share and weight >= POORER * track.best and not guess):
         track.yaw, track.yaw_seen = d.yaw if d.known else track.looks.turned(d), d.yaw_seen
