@@ -75,6 +75,18 @@ def test_a_spout_of_another_colour_is_no_object(other: Block, count: int) -> Non
     assert len(pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))) == count
 
 
+def test_what_a_handle_makes_wider_than_any_object_is_one_with_it() -> None:
+    pan: Block = ((0.9, -0.16, 0.0), (1.06, 0.02, 0.05), RED)
+    handle: Block = ((0.965, 0.02, 0.028), (0.985, 0.2, 0.046), GREEN)
+    beside: Block = ((0.94, 0.022, 0.0), (0.985, 0.2, 0.046), GREEN)
+    for other, count in ((handle, 1), (beside, 2)):
+        view, masks = picture([pan, other])
+        rows, columns = np.nonzero(np.logical_or(*masks))
+        points = view.points[rows, columns].astype(np.float64)
+        found = pieces(view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True)))
+        assert len(found) == count
+
+
 def test_a_ball_behind_a_block_is_told_apart_though_one_looks_under_it() -> None:
     view, (block, ball) = picture([((0.92, -0.03, 0.0), (0.98, 0.03, 0.059), RED)], [((1.02, 0.04, 0.0), 0.035, GREEN)])
     assert hangs(view, view.points[ball].astype(np.float64), FLOOR)

@@ -27,6 +27,9 @@ STANDS, NARROW, MOSTLY = 0.07, 0.35, 0.6
 """Height [m] from which pieces stand beside each other, share of the smaller one's outline at which they meet, up to
 which that is a joint of what is lower, and the share of it without such a step that makes them one: a bulb and its cap.
 Chosen: a lying bulb, a whisk; what stands before another hides more of it, or steps down to it."""
+CARRIED = 0.25
+"""Share of that line without such a step that makes a joint, and that a piece which hangs in the air has with what
+carries it: the handle of a pan, of a rolling pin."""
 ALL_ALONG = 0.75
 """Share of that line on which there is no such step, from which a piece that has no shape of its own belongs to the
 other. Chosen: a wooden handle that runs round the red of its bat does; what lies on another or behind it steps down."""
@@ -39,11 +42,13 @@ def jointed(
     noise: float,
     shapeless: Collection[int] = (),
     crowd: bool = False,
+    hanging: Collection[int] = (),
 ) -> NDArray[np.intp] | None:
     """The number (n,) of the piece of each pixel of `cut`, those that meet at a joint as one; None if all do.
 
     `noise` [m]: of points along the line of sight; `shapeless`: pieces that no shape explains; `crowd`: they are of
-    several objects, of which only those that lie are joined.
+    several objects, of which only those that lie are joined; `hanging`: pieces that hang in the air, each of which
+    belongs to what it meets without a step.
     """
     numbers = np.full((int(np.ptp(segment.rows)) + 3, int(np.ptp(segment.columns)) + 3), -1)
     rows, columns = segment.rows - segment.rows.min() + 1, segment.columns - segment.columns.min() + 1
@@ -62,12 +67,15 @@ def jointed(
             meet = step[((first == a) & (second == b)) | ((first == b) & (second == a))]
             share = len(meet) / min(outline[a], outline[b])
             level = float(np.mean(meet < STEP + STEP_NOISE * noise)) if len(meet) else 0.0
+            if {a, b} & {*hanging} and level >= CARRIED:
+                names[names == names[a]] = names[b]
+                continue
             high = max(tops[a], tops[b]) - segment.surface.height
             if high > LOW:
                 if high < STANDS and not crowd and share < NARROW and level >= MOSTLY:
                     names[names == names[a]] = names[b]
                 continue
-            some = 0.25 if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
+            some = CARRIED if share < SHORT else ALL_ALONG if {a, b} & {*shapeless} else math.inf
             inner, outer = sorted((a, b), key=lambda n: outline[n])
             ringed = outer in shapeless and tops[inner] < tops[outer] and _around(numbers, inner, outer) > RINGED
             if level >= some or ringed or 0 < share < THREAD:

@@ -47,6 +47,8 @@ BAND, BRIDGE = 0.006, 0.01
 """Half width [m] of that line, and of what is looked through under it."""
 LONGEST, WIDEST = 0.42, 0.12
 """Extents [m] on the floor plan up to which what is too long for a vessel is one object: a ladle, a rolling pin."""
+HANDLED = 0.5
+"""Extent [m] on the floor plan up to which what carries a handle that hangs in the air is one: a pan, a rolling pin."""
 SLIMMEST = 3.0
 """Length by width of the shortest tool of two colours. Chosen: a whisk has 4, two things beside each other 2."""
 SPLITS = 2
@@ -64,10 +66,13 @@ class Piece:
 def pieces(view: View, segment: Segment) -> list[Piece]:
     """The objects that a segment consists of; none where it is too wide for one and nothing parts it, but a tool."""
     if extent(segment) >= MAX_EXTENT:
-        whole = Piece(segment, measured(view, segment))
-        parts = _crowd(view, segment, _is_long(whole.shape))
-        crowd = [p for part in parts for p in pieces(view, part)]
-        return crowd or [whole] * _is_long(whole.shape)
+        whole, noise = Piece(segment, measured(view, segment)), noise_of(view, segment)
+        long = _is_long(whole.shape)
+        cut, hanging = _crowd(view, segment, noise, long)
+        if cut is None and hanging.any():
+            return [_with_handle(view, whole, hanging)]
+        crowd = [p for part in _cut(view, segment, cut) for p in pieces(view, part)] if cut is not None else []
+        return crowd or [whole] * long
     return _pieces(view, Piece(segment, measured(view, segment)), SPLITS)
 
 
@@ -77,20 +82,25 @@ def _is_long(shape: Measurement) -> bool:
     return length < LONGEST and width < WIDEST
 
 
-def _crowd(view: View, segment: Segment, long: bool) -> list[Segment]:
-    """The parts of a segment that is too wide for one object but a `long` one, of which there may be none: by colours,
-    those that hang together as one, else by the valley between them, else by the smallest patches."""
-    cut = by_colour(view, segment, IN_A_CROWD)
+def _crowd(view: View, segment: Segment, noise: float, long: bool) -> tuple[NDArray[np.intp] | None, NDArray[np.bool_]]:
+    """Number (n,) of the part of each pixel of a segment that is too wide for one object but a `long` one, or one with
+    a handle: by colours, those that hang together as one, else by the valley between them, else by the smallest
+    patches; None where nothing parts it. And which pixels (n,) hang in the air."""
+    cut, hanging = by_colour(view, segment, IN_A_CROWD), np.zeros(len(segment.rows), bool)
     if cut is not None:
-        joint = jointed(view, segment, cut, noise_of(view, segment), crowd=not long)
-        if joint is None and long:
-            return []
+        in_air = [n for n, part in enumerate(_cut(view, segment, cut)) if _in_air(view, part, noise)]
+        joint = jointed(view, segment, cut, noise, crowd=not long, hanging=in_air)
+        hanging = np.isin(cut, in_air)
+        body = segment.points[~hanging, :2]
+        handled = hanging.any() and extent(segment) < HANDLED and np.ptp(body, axis=0).max() < MAX_EXTENT
+        if joint is None and (long or handled):
+            return None, hanging
         cut = cut if joint is None else joint
     if cut is None:
         cut = by_valley(view, segment)
     if cut is None and not long:
         cut = by_colour(view, segment, IN_A_CROWD, FEW_IN_A_CROWD)
-    return _cut(view, segment, cut) if cut is not None else []
+    return cut, hanging
 
 
 def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
@@ -112,8 +122,7 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
         hanging = np.isin(cut, [n for n, piece in enumerate(cuts) if _hangs(view, piece, noise)])
         if hanging.any():
             # It is no object by itself, and no part of the body: a handle, a spout.
-            beside = Piece(segment, measured(view, segment, hanging))
-            whole = beside if beside.shape.residual < whole.shape.residual else whole
+            whole = _with_handle(view, whole, hanging)
             continue
         parts = _level_joined(view, segment, cut, cuts)
         if len(parts) < 2 or any(_stands_on(p, parts) for p in parts):
@@ -136,6 +145,19 @@ def _level_joined(view: View, segment: Segment, cut: NDArray[np.intp], parts: li
     if joint is None or int(joint.max()) + 1 == len(parts):
         return [] if joint is None else parts
     return [Piece(s, measured(view, s)) for s in _cut(view, segment, joint)]
+
+
+def _with_handle(view: View, whole: Piece, hanging: NDArray[np.bool_]) -> Piece:
+    """An object of which some pixels (n,) hang beside its body, if that explains it better."""
+    found = Piece(whole.segment, measured(view, whole.segment, hanging))
+    return found if found.shape.residual < whole.shape.residual else whole
+
+
+def _in_air(view: View, segment: Segment, noise: float) -> bool:
+    """The same of what was not measured yet."""
+    return hangs(view, segment.points, segment.surface.height) and _hangs(
+        view, Piece(segment, measured(view, segment)), noise
+    )
 
 
 def _hangs(view: View, piece: Piece, noise: float) -> bool:
