@@ -16,8 +16,9 @@ from services.manipulation.grasps.grasped_object import SHRINK, GraspedObject
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import NEAR, LastAnswers, Planner, inflated
 from services.manipulation.planning.plan_place import DEEPEST, plan_place
+from services.manipulation.planning.planning_scene import obstacles
 from services.sim.model import own
-from tests.unit.test_manipulation_stances import PLANNER
+from tests.unit.test_manipulation_stances import HOME, PLANNER
 
 
 def touching(arm: ArmModel, q: Array) -> list[tuple[str, str]]:
@@ -99,6 +100,24 @@ def test_in_straight_motions_the_arm_keeps_off_its_base_by_as_much_as_it_lags() 
     arm.set_obstacles([Obstacle((hand[0], hand[1], hand[2]), (0.1, 0.1, 0.1), 0.0)])
     assert arm.collides(arm.home) and not arm.meets_itself([arm.home]), "a box is not the robot"
     assert arm.meets_itself([arm.home, near])
+
+
+def test_the_arm_and_what_it_holds_meet_the_floor_on_which_the_base_stands() -> None:
+    planner = Planner(own().mjcf, 0)
+    arm = planner.arm
+
+    def at(height: float) -> Array:
+        pose = Pose(np.array([arm.forward + 0.48, 0.0, height]), approach_rotation(0.0, np.pi / 2))
+        found = planner.ik.solve(pose, seeds(arm, pose, arm.home))
+        assert found is not None
+        return found
+
+    arm.set_obstacles(inflated(obstacles(HOME, (0.0, 0.0, 0.0), []), NEAR))
+    assert not arm.collides(arm.home)
+    arm.set_obstacles(obstacles(HOME, (0.0, 0.0, 0.0), []))
+    assert arm.collides(at(0.0)) and not arm.collides(at(0.03))
+    arm.hold(np.array([0.03, 0.03, 0.06]), np.zeros(3))
+    assert arm.collides(at(0.05)) and not arm.collides(at(0.07))
 
 
 @pytest.mark.parametrize(("high", "grounded"), [(0.03, True), (0.12, False)])

@@ -72,7 +72,7 @@ def test_nothing_is_let_go_above_what_lies_in_the_bin() -> None:
 def test_the_end_of_a_wall_is_an_obstacle_as_far_as_it_closes_the_corner() -> None:
     wall = Wall(start=(0.5, -1.0), end=(0.5, 0.3), thickness=0.12)
     home = msgspec.structs.replace(SCENE, walls=(wall,), furniture=(), receptacles=())
-    (box,) = obstacles(home, (0.0, 0.5, -math.pi / 2), [])
+    _, box = obstacles(home, (0.0, 0.5, -math.pi / 2), [])
     solid = Rectangle(*box.center[:2], *box.size[:2], box.yaw)
     assert solid.contains(0.5 - 0.36 + 0.005, 0.5) and not solid.contains(0.5 - 0.36 - 0.005, 0.5)
     assert solid.contains(0.2, 0.5) and np.isclose(box.size[2], wall.height)

@@ -26,7 +26,8 @@ Solid = Literal["box", "cylinder", "ellipsoid"]
 @dataclass(frozen=True)
 class Obstacle:
     """A solid in the base frame: centre, full extents, yaw. The axis of a cylinder is vertical; if it `lies`, it is
-    along its own x. `label` names the object that it stands for, "" furniture and walls.
+    along its own x. `label` names the object that it stands for, "" furniture and walls. Only the arm, and what it
+    holds, meets the `floor`: the base stands on it.
     """
 
     center: tuple[float, float, float]
@@ -35,6 +36,7 @@ class Obstacle:
     solid: Solid = "box"
     lies: bool = False
     label: str = ""
+    floor: bool = False
 
     def geom(self) -> tuple[int, Array, Array, tuple[float, float, float, float]]:
         """MuJoCo's geom type and size (3,), half extents (3,) of the box around it [m], quaternion of its pose."""
@@ -75,6 +77,8 @@ OWN_GAP = 0.005
 WIDEST_GAP = 0.02
 """Distance [m] from which the robot is looked at where the arm has to keep away from it. Chosen: links that are not
 neighbours are farther from each other however the arm bends, a wrist 25 mm from its forearm."""
+SOLID, FLOOR, HOLDS = (1, 2), (4, 0), (2, 1 | 4)
+"""Bits of `contype` and `conaffinity` of what is around, of the floor, and of what the hand holds."""
 TRUNK = 4
 """Joints from the base on whose links the rest of the arm, and what the hand holds, keep away from: those up to the
 elbow and the forearm. The links after that are as near to each other in any configuration as they are built."""
@@ -87,15 +91,17 @@ def planning_model(robot_mjcf: str) -> Any:
     for link in (spec.body("base"), links[0].parent, *links):
         for geom in link.geoms:
             geom.margin = WIDEST_GAP
+    for geom in links[0].find_all("geom"):
+        geom.conaffinity |= FLOOR[0] if geom.conaffinity else 0
     kind = mujoco.mjtGeom.mjGEOM_BOX
     for i in range(BOXES):
         box = spec.worldbody.add_body(name=f"box_{i}", mocap=True, pos=[FAR, FAR, i])
-        box.add_geom(name=f"box_{i}", type=kind, size=[0.01] * 3, contype=1, conaffinity=2)
+        box.add_geom(name=f"box_{i}", type=kind, size=[0.01] * 3, contype=SOLID[0], conaffinity=SOLID[1])
     spec.worldbody.add_geom(name=STAND_IN, type=kind, size=[0.01] * 3, pos=[0, FAR, 0], contype=0, conaffinity=0)
     pos, quat = _pinch_in_gripper(spec.compile())
     spec.body("gripper").add_geom(
         name="held", type=kind, size=[HELD] * 3, pos=pos, quat=quat, mass=0.0,
-        contype=2, conaffinity=1,
+        contype=HOLDS[0], conaffinity=HOLDS[1],
     )  # fmt: skip
     # The fingers touch what they hold.
     known = {(e.bodyname1, e.bodyname2) for e in spec.excludes}
@@ -162,6 +168,8 @@ class ArmModel:
             if i < len(nearest):
                 kind, size, half, turn = nearest[i].geom()
                 self.model.geom_type[geom] = kind
+                meets = FLOOR if nearest[i].floor else SOLID
+                self.model.geom_contype[geom], self.model.geom_conaffinity[geom] = meets
                 self._resize(geom, half)
                 self.model.geom_size[geom] = size
                 self.data.mocap_pos[mocap] = nearest[i].center
@@ -171,7 +179,7 @@ class ArmModel:
 
     def hold(self, half: Array | None, offset: Array | None = None, turned: Array | None = None) -> None:
         """Carry a box of these half extents, `offset` and `turned` (3, 3) in the pinch point's frame; None: nothing."""
-        flags = (0, 0) if half is None else (2, 1)
+        flags = (0, 0) if half is None else HOLDS
         self.model.geom_contype[self._held], self.model.geom_conaffinity[self._held] = flags
         if half is not None and offset is not None:
             self._resize(self._held, half)

@@ -114,9 +114,9 @@ def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
 def obstacles(
     floor_plan: FloorPlan, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGINS[0]
 ) -> list[Obstacle]:
-    """Everything within reach, nearest first; the objects are solids of their family that grow by `margin` and, unless
-    that is 0, by the spread of their measures; `without` names the one to leave out."""
-    found: list[Obstacle] = []
+    """The floor, then everything within reach, nearest first; the objects are solids of their family that grow by
+    `margin` and, unless that is 0, by the spread of their measures; `without` names the one to leave out."""
+    found = [Obstacle((0.0, 0.0, -SLAB / 2), (2 * RANGE, 2 * RANGE, SLAB), floor=True)]
     for r in floor_plan.receptacles:
         found += _receptacle(r, base)
     found += [_box(base, f.center, f.size, f.yaw) for f in floor_plan.furniture]
