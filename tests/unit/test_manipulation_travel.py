@@ -5,11 +5,13 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
+import pytest
 
-from services.manipulation.arm.touch import HIT, MET
+from services.manipulation.arm.touch import BLOCKED, HIT, MET
 from services.manipulation.arm.trajectory import Leg
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.execution.robot import CALM, Robot
+from services.manipulation.execution.place_executor import _execute_place, untried_first
+from services.manipulation.execution.robot import CALM, Failure, Robot
 
 
 def test_the_arm_is_at_rest_before_it_begins_to_feel_for_what_is_near() -> None:
@@ -29,3 +31,18 @@ def test_the_arm_is_at_rest_before_it_begins_to_feel_for_what_is_near() -> None:
     path = [np.zeros(7), np.ones(7)]
     assert not any(Robot.travel(robot, [Leg(path, near=True), Leg(path, near=False), Leg(path, near=True)]))
     assert done == [("follow", MET), ("follow", HIT), ("wait", CALM), ("follow", MET)]
+
+
+def test_where_something_was_met_on_the_way_to_a_spot_another_one_comes_first() -> None:
+    def travel(way: Any, share: float) -> Generator[None, None, None]:
+        raise Failure(BLOCKED, "30 N on the hand")
+        yield
+
+    robot = cast(Robot, SimpleNamespace(base=(1.0, 0.0, np.pi / 2), met_before=[], travel=travel))
+    spots = [(0.5, 0.0), (0.55, 0.05), (0.5, 0.3)]
+    assert untried_first(robot, spots) == spots
+    with pytest.raises(Failure):
+        next(_execute_place(robot, cast(Any, SimpleNamespace(spot=spots[0], reach=[])), cast(Any, None), "desk", 0.7))
+    assert untried_first(robot, spots) == [spots[2], *spots[:2]], "one beside it is reached by the same way"
+    robot.base = (1.0, 0.25, np.pi / 2)
+    assert untried_first(robot, [(0.25, 0.0), (0.5, 0.0)]) == [(0.5, 0.0), (0.25, 0.0)], "it stays on the map"

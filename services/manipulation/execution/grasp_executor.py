@@ -157,6 +157,7 @@ def _execute_grab(
             yield from _set_back(robot, plan, way, free)
         raise
     robot.contacts.clear()
+    robot.met_before.clear()
     robot.sent_to.pop(plan.grasped.label, None)
     robot.source.remember(plan.grasped.label, None, "", robot.now)
     return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"

@@ -1,5 +1,6 @@
 """Place executor: the grasped object is set on a receptacle or where there is room; the hand opens when it stands."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -10,7 +11,7 @@ from common.floor_plan import Receptacle
 from common.geometry import Array, compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
-from services.manipulation.arm.touch import HIT, TOUCHED
+from services.manipulation.arm.touch import BLOCKED, HIT, TOUCHED
 from services.manipulation.arm.trajectory import back_along
 from services.manipulation.execution.recovery import go_home
 from services.manipulation.execution.releasing import STUCK, let_go
@@ -22,7 +23,7 @@ from services.manipulation.grasps.sagging import sagged
 from services.manipulation.planning.edge_spots import Placement, edge_spots
 from services.manipulation.planning.lift import straight_up
 from services.manipulation.planning.plan_place import DEEPEST, DROP, PlacePlan, plan_place, plan_placements
-from services.manipulation.planning.planning_scene import bin_spots, obstacles, spots
+from services.manipulation.planning.planning_scene import ELSEWHERE, bin_spots, obstacles, spots
 from services.manipulation.planning.surface_edge import facing_edge
 
 Plan = Callable[..., PlacePlan]
@@ -64,7 +65,7 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
                 continue
             surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
             # What lies takes up more room than when it stands.
-            free = free_spots(robot, r, max(stance.size[:2]), held.label, anchor, away_from)
+            free = untried_first(robot, free_spots(robot, r, max(stance.size[:2]), held.label, anchor, away_from))
             plans = [partial(plan_place, planner, stance, free, surface, drop)] if free else []
             if anchor is None and (over := _over_edge(robot, r, stance)):
                 # A hand that is level has its knuckles in the surface, wherever else it sets down what it holds.
@@ -132,6 +133,16 @@ def free_spots(
     return spots(r, robot.base, footprint, taken, planner_of(robot).arm.forward, anchor)
 
 
+def untried_first(robot: Robot, free: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spots in the base frame, those on the way to which something was met last: the same way leads into it again."""
+
+    def tried(spot: tuple[float, float]) -> bool:
+        x, y, _ = compose(robot.base, (*spot, 0.0))
+        return any(math.dist((x, y), other) < ELSEWHERE for other in robot.met_before)
+
+    return sorted(free, key=tried)
+
+
 def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
     """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
     r = robot.io.household.receptacle(where)
@@ -141,7 +152,14 @@ def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
 
 
 def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str, surface: float) -> Steps[str]:
-    yield from robot.travel(plan.reach, 0.8)
+    x, y, _ = compose(robot.base, (*plan.spot, 0.0))
+    try:
+        yield from robot.travel(plan.reach, 0.8)
+    except Failure as failure:
+        if failure.code == BLOCKED:
+            robot.met_before.append((x, y))
+        raise
+    robot.met_before.clear()
     if robot.grip.empty:
         robot.grasped = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
@@ -161,7 +179,6 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
         robot.grasped = None
         robot.forget_command()
         yield from go_home(robot)
-    x, y, _ = compose(robot.base, (*plan.spot, 0.0))
     robot.source.remember(held.label, (x, y, surface + held.size[2] / 2), name, robot.now)
     return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
 
@@ -194,7 +211,7 @@ def lower(robot: Robot, plan: PlacePlan, held: GraspedObject, falls: bool) -> St
         if above > most:
             robot.grasped = turned or robot.grasped
             yield from _take_up(robot, rest)
-            raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high")
+            raise Failure(BLOCKED, f"the {held.label} met something {1000 * above:.0f} mm too high")
     robot.io.log.info("set down", object=held.label, above_mm=above and round(1000 * above, 1))
 
 

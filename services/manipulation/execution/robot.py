@@ -55,7 +55,8 @@ class Failure(Exception):
 class Robot:
     """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers.
 
-    `sent_to`: by label, the stances (x, y, theta) [map] that were told for an object that is not grasped yet.
+    `sent_to`: by label, the stances (x, y, theta) [map] that were told for an object that is not grasped yet;
+    `met_before`: spots (x, y) [map] on whose ways what is held, or the arm, has met something.
     """
 
     def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
@@ -69,6 +70,7 @@ class Robot:
         self.grasped: GraspedObject | None = None
         self.contacts = ContactLog()
         self.sent_to: dict[str, list[Pose2]] = {}
+        self.met_before: list[tuple[float, float]] = []
         self.planner: Planner | None = None
         self.servo: Servo | None = None
         self._command: Array | None = None
