@@ -34,7 +34,7 @@ HIGH = 0.95
 """Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
 tables, counters and the backs of sofas."""
 LEAST_AREA = 2.5
-"""Floor [m2] of a room, at least."""
+"""Floor [m2] of a room, at least, with that under its furniture: a bed may hide most of a bedroom."""
 
 
 def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> list[Room]:
@@ -57,7 +57,7 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
     boxes: list[tuple[float, Rectangle]] = []
     along = Rectangle(0.0, 0.0, 0.0, 0.0, _direction(walls))
     for n in np.unique(grown[grown > 0]):
-        rows, columns = np.nonzero((grown == n) & (states == FREE))
+        rows, columns = np.nonzero(grown == n)
         if len(rows) * RESOLUTION**2 < LEAST_AREA:
             continue
         points = grid.points((rows, columns))

@@ -53,7 +53,7 @@ class Goals:
         if place is None:
             raise Ended("failed", "UNKNOWN_PLACE", f"no place {name!r}; known: {self._places.similar(name)}")
         if isinstance(place, Room):
-            return _within(place)
+            return self._within(place)
         if not isinstance(place, Receptacle):
             return [(0.0, place)]
         if place.name == self._household.delivery and delivers_at_home(self._household):
@@ -102,6 +102,22 @@ class Goals:
         """The pose at which an item is expected while perception does not run."""
         return [(0.0, self._places.spot(item) or self._config.find_spot)]
 
+    def _within(self, room: Room) -> Choices:
+        """Spots all over a room, the penalty growing from its middle, where perhaps a table stands.
+
+        Of a room that goes round another one, as an L does, its rectangle has floor of that: the spots there are left
+        out, unless there are no others.
+        """
+        outline = room.outline
+        counts = [max(0, math.floor((side / 2 - INSIDE) / SPACING)) for side in (outline.length, outline.width)]
+        shifts = [
+            (i * SPACING, j * SPACING)
+            for i in range(-counts[0], counts[0] + 1)
+            for j in range(-counts[1], counts[1] + 1)
+        ]
+        spots: Choices = [(math.hypot(*s), (*outline.to_map(*s), 0.0)) for s in shifts]
+        return [s for s in spots if self._household.room_at(*s[1][:2]) == room] or spots
+
     def _before(self, point: tuple[float, float], receptacle: Receptacle | None) -> Choices:
         """Poses before the sides that the household lists, and with a penalty before the others that no wall is beside:
         a chair may stand before the only side that is listed."""
@@ -119,16 +135,6 @@ class Goals:
             for penalty, pose in poses_for(point, turned, stand_off, edge_distance)
             if not any(wall.meets(point, pose[:2]) for wall in walls)
         ]
-
-
-def _within(room: Room) -> Choices:
-    """Spots all over a room, the penalty growing from its middle, where perhaps a table stands."""
-    outline = room.outline
-    counts = [max(0, math.floor((side / 2 - INSIDE) / SPACING)) for side in (outline.length, outline.width)]
-    shifts = [
-        (i * SPACING, j * SPACING) for i in range(-counts[0], counts[0] + 1) for j in range(-counts[1], counts[1] + 1)
-    ]
-    return [(math.hypot(*s), (*outline.to_map(*s), 0.0)) for s in shifts]
 
 
 def in_words(goal: Goal) -> str:

@@ -287,6 +287,20 @@ def test_a_wall_that_furniture_hides_from_the_lidar_parts_two_rooms() -> None:
     assert len(find_rooms(grid, states, walls)) == 2
 
 
+def test_a_room_has_the_floor_under_its_furniture() -> None:
+    """Of 3 x 3 m, most of it a bed, behind which no floor is seen."""
+    grid = Grid((-4.0, -4.0), (4.0, 4.0))
+    states = np.full(grid.shape, UNKNOWN, np.uint8)
+    for area, state in ((Rectangle(-1.5, 0.0, 3.0, 3.0), FREE), (Rectangle(0.35, 0.0, 0.7, 3.0), FREE),
+                        (Rectangle(1.7, 0.0, 2.0, 3.0), OCCUPIED)):  # fmt: skip
+        cells = grid.points(tuple(np.indices(grid.shape).reshape(2, -1)))  # type: ignore[arg-type]
+        states[area.signed_distances(cells[:, 0], cells[:, 1]).reshape(grid.shape) < 0.0] = state
+    ends = [((0.0, -1.5), (0.0, -0.5)), ((0.0, 0.5), (0.0, 1.5)), ((-3.0, 1.5), (3.0, 1.5))]
+    rooms = find_rooms(grid, states, [Wall(start=a, end=b) for a, b in ends])
+    assert [round(room.middle[0], 1) for room in rooms] == pytest.approx([-1.5, 1.4], abs=0.15)
+    assert rooms[1].high[0] == pytest.approx(2.7, abs=0.1), "up to the far side of the bed"
+
+
 @pytest.mark.parametrize(("width", "rooms"), [(1.4, 2), (2.4, 1)])
 def test_a_corridor_that_opens_between_two_corners_is_a_room_and_a_wide_bay_is_none(width: float, rooms: int) -> None:
     """A room 5 m wide and 3 m deep, from whose side something 4 m long leads away."""
