@@ -93,6 +93,8 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
         less = blind + _from_below(upper, rotation)
         floor = rotation[2], target.bottom - target.position[2] + PLAY
         for there in _places((points - centre) @ rotation, floor, opening, (least, widest), most):
+            if not len(there.at):
+                continue
             arm = there.at @ rotation.T
             worth = _worth(target, there, arm, tilt, off, widest) - less
             near = np.hypot(arm[:, 0], arm[:, 1]) <= LEVER

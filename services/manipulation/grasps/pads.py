@@ -69,6 +69,9 @@ class Wanted:
     share: float = 0.0
 
 
+_NOWHERE = Contacts(np.empty((0, 3)), *np.empty((3, 0)))
+
+
 def contacts(local: Array, floor: tuple[Array, float], opening: float, wanted: Wanted = Wanted()) -> Contacts:
     """What pads find wherever they may come to lie with one rotation.
 
@@ -84,36 +87,41 @@ def contacts(local: Array, floor: tuple[Array, float], opening: float, wanted: W
         low[1] = deepest + PAD - math.ceil((deepest + PAD - low[1]) / CELL[1]) * CELL[1]
     index = np.floor((local[:, (0, 2)] - low) / CELL).astype(int) + PADDING
     shape = (int(index[:, 0].max()) + 1 + PADDING[0], int(index[:, 1].max()) + 1 + PADDING[1])
-    left, right = np.full(shape, -np.inf), np.full(shape, np.inf)
-    np.maximum.at(left, (index[:, 0], index[:, 1]), local[:, 1])
-    np.minimum.at(right, (index[:, 0], index[:, 1]), local[:, 1])
-    sides = [left, -right]
+    sides, cells = np.full((2, *shape), -np.inf), index[:, 0] * shape[1] + index[:, 1]
+    for side, outward in zip(sides, (local[:, 1], -local[:, 1]), strict=True):
+        np.maximum.at(side.reshape(-1), cells, outward)
     height = float(np.ptp(local @ up))
-    first = _first(np.isfinite(left))
+    filled = np.isfinite(sides[0])
     if height <= 2 * PAD:
-        sides = [_without_upper_face(side) for side in sides]
-    tops = [_largest(_largest(side, CELLS[0], 0), CELLS[1], 1) for side in sides]
+        sides = np.stack([_without_upper_face(side) for side in sides])
+    tops = _largest(_largest(sides, CELLS[0], 1), CELLS[1], 2)
     with np.errstate(invalid="ignore"):
         middle, width = (tops[0] - tops[1]) / 2, tops[0] + tops[1]
-        reach = [_passed(side) for side in sides]
+        reach = _passed(sides)
         fits = np.maximum(reach[0] - middle, reach[1] + middle) <= opening / 2 - PLAY
         fits &= (width > 0) & (width >= wanted.width[0]) & (width <= wanted.width[1])
         fits &= (middle >= wanted.aside[0]) & (middle <= wanted.aside[1])
     rows, columns = np.nonzero(fits)
+    if not len(rows):
+        return _NOWHERE
     along = low[0] + (rows + CELLS[0] / 2 - PADDING[0]) * CELL[0]
     deep = low[1] + (columns + CELLS[1] / 2 - PADDING[1]) * CELL[1]
     can = _deepest(up, level, along, middle[fits], width[fits])
     # Between whole cells the pads stay a little farther back, if something of a low thing is between them still.
     back = min(CELL[1], max(0.0, height - PLAY)) / 2
-    near = (columns + CELLS[1] / 2 - first[rows]) * CELL[1] <= HAND_DEPTH
+    near = (columns + CELLS[1] / 2 - _first(filled)[rows]) * CELL[1] <= HAND_DEPTH
     near &= (np.abs(along) <= LONGEST) & (deep <= can + back + 1e-6)
     at = np.stack([along, middle[fits], np.minimum(deep, can)], axis=1)[near]
     rows, columns = rows[near], columns[near]
+    if not len(rows):
+        return _NOWHERE
     pads = [np.lib.stride_tricks.sliding_window_view(side, CELLS)[rows, columns] for side in sides]
     with np.errstate(invalid="ignore"):
         above = [pad - pad.max(axis=(1, 2), keepdims=True, initial=-np.inf) for pad in pads]
     share, slope = np.minimum(*map(_share, above)), np.full(len(at), np.inf)
     much = share >= wanted.share
+    if not much.any():
+        return _NOWHERE
     least = tuple(2 if np.ptp(local[:, axis]) > 2 * size else 1 for axis, size in zip((0, 2), CELL, strict=True))
     slope[much] = np.maximum(*(_slope(side[much], least) for side in above))
     held = slope <= STEEPEST
@@ -164,18 +172,19 @@ def _first(filled: Array) -> Array:
     return -_largest(-np.pad(reached, 1, constant_values=filled.shape[1]), CELLS[0] + 2, 0)
 
 
-def _passed(side: Array) -> Array:
-    """For every pad's place the outermost [m] that a finger passes on its way there."""
-    return _largest(np.maximum.accumulate(side, axis=1), CELLS[0], 0)[:, CELLS[1] - 1 :]
+def _passed(sides: Array) -> Array:
+    """For every place of the pads on both sides (2, rows, columns) the outermost [m] that a finger passes to there."""
+    return _largest(np.maximum.accumulate(sides, axis=2), CELLS[0], 1)[..., CELLS[1] - 1 :]
 
 
 def _largest(values: Array, count: int, axis: int) -> Array:
     """The largest of each `count` neighbours along an axis."""
-    last = values.shape[axis] - count + 1
-    found = values.take(range(last), axis)
+    values = values.swapaxes(axis, 0)
+    last = len(values) - count + 1
+    found = values[:last].copy()
     for n in range(1, count):
-        np.maximum(found, values.take(range(n, n + last), axis), out=found)
-    return found
+        np.maximum(found, values[n : n + last], out=found)
+    return found.swapaxes(0, axis)
 
 
 def _share(above: Array) -> Array:
