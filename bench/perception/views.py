@@ -71,7 +71,7 @@ def take(
     rgb, depth = renderer.rgbd("head", args.width, args.height)
     focal = renderer.focal("head", args.height)
     if args.sensors == "bought":
-        surfaces = renderer.surfaces("head", args.width, args.height)
+        surfaces = renderer.surfaces("head", depth)
         camera = StereoCamera(int(rng.integers(2**32)))
         taken = camera.expose(rgb, depth, focal, int(rng.integers(2**31)), surfaces)
         rgb, depth = taken.rgb, taken.depth / 1000.0

@@ -86,12 +86,14 @@ class Offscreen:
         mujoco.mjr_render(self._rect, scene, self._context)
         mujoco.mjr_readPixels(rgb, None, self._rect, self._context)
         flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = False
-        numbers = np.full(scene.ngeom + 1, -1, np.int32)
+        numbers = np.full(1 << 16, -1, np.int32)  # two of the three bytes of a colour: there are MAX_GEOMS at most
         for geom in scene.geoms[: scene.ngeom]:
             if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM:
                 numbers[geom.segid + 1] = geom.objid
-        shown = rgb[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], np.int32)
-        return numbers[np.where(shown <= scene.ngeom, shown, 0)]
+        shown = rgb[::-1, :, 1].astype(np.uint16)
+        shown <<= 8
+        shown |= rgb[::-1, :, 0]
+        return np.take(numbers, shown)
 
     def _metres(self, z: NDArray[np.float32]) -> NDArray[np.float32]:
         """Undo the perspective of a reversed z-buffer (1 near, 0 far), as `mujoco.Renderer` does."""
@@ -99,11 +101,10 @@ class Offscreen:
         near, far = np.float32(self._model.vis.map.znear * extent), np.float32(self._model.vis.map.zfar * extent)
         offset = np.float32(0.5) * (far + near) / (far - near) - np.float32(0.5)
         scale = np.float32(far * near) / (far - near)
+        metres = np.empty(z.shape, np.float32)
         # float32 would lose millimetres far away.
-        metres = z.astype(np.float64)
-        metres += offset
-        np.divide(scale, metres, out=metres)
-        return metres.astype(np.float32)
+        np.divide(scale, np.add(z, offset, dtype=np.float64), out=metres, dtype=np.float64, casting="same_kind")
+        return metres
 
     def close(self) -> None:
         """Free the GL context, in the thread that made it."""

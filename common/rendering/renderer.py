@@ -12,6 +12,8 @@ from common.rendering.looks import SKY
 
 FAR = 25.0
 """Depth [m] from which there is nothing: beyond the largest flat."""
+NEAR = 0.02
+"""Depth [m] by which something has to be behind all that is seen to be hidden; chosen: far more than depth's error."""
 LAYERS = 12
 """Parts into which what is drawn is sorted by distance [count]; chosen: with more nothing is gained."""
 
@@ -75,7 +77,7 @@ class Renderer:
         self._mujoco.mj_kinematics(self.model, self.data)
         self._mujoco.mj_camlight(self.model, self.data)
 
-    def rgbd(self, camera: str, width: int, height: int) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    def rgbd(self, camera: str, width: int, height: int) -> tuple[NDArray[np.uint8], NDArray[np.floating]]:
         """RGB (height, width, 3) and depth (height, width) [m] of a camera of the model."""
         number = self.model.camera(camera).id
         if self.backend == "raycast":
@@ -84,7 +86,7 @@ class Renderer:
         rgb, depth = self._drawn(number, width, height, sight)
         if (sight & self._clear).any():
             depth = self._drawn(number, width, height, sight & ~self._clear)[1]
-        return rgb, depth.astype(np.float64)
+        return rgb, depth
 
     def band(self, camera: str, width: int, height: int, rows: tuple[int, int]) -> NDArray[np.uint8]:
         """RGB (n, width, 3) of some rows, the first and the one after the last, of a camera's picture."""
@@ -94,12 +96,20 @@ class Renderer:
         sight = self._in_sight(number, width / height, (1 - 2 * end / height, 1 - 2 * first / height))
         return self._drawn(number, width, height, sight, rows)[0]
 
-    def surfaces(self, camera: str, width: int, height: int) -> Surfaces | None:
-        """Which pixels of a camera show what depth cameras have their trouble with; None: nothing of it in sight."""
-        number = self.model.camera(camera).id
+    def surfaces(self, camera: str, depth: NDArray[np.floating]) -> Surfaces | None:
+        """Which pixels of a camera show what depth cameras have their trouble with; None: nothing of it in sight.
+
+        `depth` (h, w) [m]: of the same state, without what is transparent, 0 for nothing.
+        """
+        number, (height, width) = self.model.camera(camera).id, depth.shape
         sight = self._in_sight(number, width / height)
-        if not (sight & (self._clear | (self._gloss > 0.0))).any():
+        hard = sight & (self._clear | (self._gloss > 0.0))
+        rows = [found for g in np.flatnonzero(hard).tolist() if (found := self._rows(number, g, depth)) is not None]
+        if not rows:
             return None
+        # What reaches into none of these rows hides nothing of it.
+        first, end = min(a for a, _ in rows), max(b for _, b in rows)
+        sight = self._in_sight(number, width / height, (1 - 2 * end / height, 1 - 2 * first / height))
         if self.backend == "raycast":
             shown = self._cast(number, width, height)[2]
         else:
@@ -108,6 +118,25 @@ class Renderer:
             )
         # The last entry is for pixels that show nothing, number -1.
         return Surfaces(np.append(self._gloss, 0.0)[shown], np.append(self._clear, False)[shown])
+
+    def _rows(self, camera: int, geom: int, depth: NDArray[np.floating]) -> tuple[int, int] | None:
+        """The rows, the first and the one after the last, in which a geom may be seen; None where all that is seen
+        there is nearer."""
+        height, width = depth.shape
+        data, radius = self.data, float(self.model.geom_rbound[geom])
+        x, y, z = (data.geom_xpos[geom] - data.cam_xpos[camera]) @ data.cam_xmat[camera].reshape(3, 3)
+        near = -z - radius
+        if radius == 0.0 or near < NEAR:
+            return 0, height
+        focal = height / 2 / np.tan(np.radians(self.model.cam_fovy[camera]) / 2)
+        # Between the near and the far side of its bounding sphere, a pixel wider.
+        across = [focal * (x + r) / d for r in (-radius, radius) for d in (near, near + 2 * radius)]
+        down = [-focal * (y + r) / d for r in (-radius, radius) for d in (near, near + 2 * radius)]
+        left, right = (max(0, min(width, round(width / 2 + u))) for u in (min(across) - 1, max(across) + 1))
+        first, end = (max(0, min(height, round(height / 2 + v))) for v in (min(down) - 1, max(down) + 1))
+        seen = depth[first:end, left:right]
+        shows = seen.size and (seen.max() > near - NEAR or seen.min() == 0.0)
+        return (first, end) if shows else None
 
     def _fixed(self, camera: int) -> Any:
         found = self._mujoco.MjvCamera()

@@ -10,12 +10,11 @@ from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from common.rendering.renderer import Surfaces
 
 Rgb = NDArray[np.uint8]
-Depth = NDArray[np.float64]
+Depth = NDArray[np.floating]
 
 BASELINE = 0.05
 """Distance of the two imagers [m]."""
@@ -45,6 +44,8 @@ EXPOSURE, WHITE_BALANCE = 0.08, 0.04
 """Largest deviations of all channels together and of red and blue alone; chosen: automatic control that has settled."""
 MOUNT_OFFSET, MOUNT_TURN = 0.003, 0.3
 """Most that a camera sits off its drawing, along and about each axis [m, deg]; chosen: a printed bracket with play."""
+BLOCK = 32
+"""Rows of a picture that are worked out at once [count]; chosen: what they need fits the processor's cache."""
 MARGIN = 64
 """By how much [px] the noise that is drawn once is larger than a picture, which takes a piece from a random corner of
 it: drawing it anew would cost as much as the picture."""
@@ -76,8 +77,8 @@ class StereoCamera:
         self._seed = seed
         gain = 1.0 + rng.uniform(-EXPOSURE, EXPOSURE)
         red, blue = 1.0 + rng.uniform(-WHITE_BALANCE, WHITE_BALANCE, 2)
-        levels = np.arange(256)[:, None] * np.array([gain * red, gain, gain * blue])
-        self._levels = np.clip(np.round(levels), 0, 255).astype(int).T.ravel().tolist()
+        levels = np.array([gain * red, gain, gain * blue])[:, None] * np.arange(256)
+        self._levels = np.clip(np.round(levels), 0, 255).astype(np.int16)
         self.offset = rng.uniform(-MOUNT_OFFSET, MOUNT_OFFSET, 3)
         self.turn = np.radians(rng.uniform(-MOUNT_TURN, MOUNT_TURN, 3))
         self._noise: dict[tuple[int, int], tuple[NDArray[np.float32], NDArray[np.int16]]] = {}
@@ -90,12 +91,22 @@ class StereoCamera:
         bumps, grain = self._drawn(depth.shape)
         row, column = np.random.default_rng([self._seed, moment]).integers(MARGIN, size=2)
         piece = slice(row, row + depth.shape[0]), slice(column, column + depth.shape[1])
-        levels = np.asarray(Image.fromarray(rgb).point(self._levels)) + grain[piece]
-        seen = np.clip(levels, 0, 255, out=levels).astype(np.uint8)
-        measured = _measure(rgb, depth, focal, bumps[piece])
+        noise, seen, measured = bumps[piece], np.empty_like(rgb), np.empty(depth.shape, np.uint16)
+        for top in range(0, len(rgb), BLOCK):
+            rows, around = slice(top, top + BLOCK), slice(max(top - 1, 0), top + BLOCK + 1)
+            seen[rows] = self._seen(rgb[rows], grain[piece][rows])
+            far = np.where(depth[around] > 0.0, depth[around], np.inf).astype(np.float32)
+            own = slice(top - around.start, top - around.start + BLOCK)
+            measured[rows] = _measure(rgb[rows], far[own], focal, noise[rows], _edges(far)[own])
         if surfaces is not None:
-            measured[_unmatched(surfaces, depth, focal, bumps[piece][::-1, ::-1])] = 0
+            measured[_unmatched(surfaces, depth, focal, noise[::-1, ::-1])] = 0
         return Picture(seen, measured)
+
+    def _seen(self, rgb: Rgb, grain: NDArray[np.int16]) -> Rgb:
+        """The colours (h, w, 3) at this camera's gain, with their noise."""
+        levels = np.stack([np.take(table, rgb[..., k]) for k, table in enumerate(self._levels)], axis=-1)
+        levels += grain
+        return np.clip(levels, 0, 255, out=levels).astype(np.uint8)
 
     def _drawn(self, shape: tuple[int, ...]) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
         """Noise of unit variance and of levels for pictures of a shape, always the same."""
@@ -127,16 +138,17 @@ def quantiles(shares: Depth) -> Depth:
     return np.asarray(values[place.reshape(shares.shape)])
 
 
-def _measure(rgb: Rgb, depth: Depth, focal: float, noise: NDArray[np.float32]) -> NDArray[np.uint16]:
+def _measure(
+    rgb: Rgb, far: NDArray[np.float32], focal: float, noise: NDArray[np.float32], edges: NDArray[np.bool_]
+) -> NDArray[np.uint16]:
     """Depth (h, w) [mm] from disparity with `noise` (h, w) of unit variance; 0 where none can be matched."""
     scale = np.float32(focal * BASELINE)
-    far = np.where(depth > 0.0, depth, np.inf).astype(np.float32)
     true = scale / far
     red, green, blue = (rgb[..., channel] for channel in range(3))
     brightest, darkest = np.maximum(np.maximum(red, green), blue), np.minimum(np.minimum(red, green), blue)
     noise = noise * _FAINT[brightest]
     disparity = np.round((true + noise * (NOISE_AT_1_M * scale)) * SUBPIXELS)
-    blind = (far < LEAST_RANGE) | np.isinf(far) | (disparity < 1.0) | _shadowed(true) | _edges(far)
+    blind = (far < LEAST_RANGE) | np.isinf(far) | (disparity < 1.0) | _shadowed(true) | edges
     blind |= (brightest < DARK) | (darkest > GLARE)
     measured = scale * (1000 * SUBPIXELS) / np.maximum(disparity, 1.0)
     measured[blind] = 0.0
@@ -168,9 +180,10 @@ def _unmatched(surfaces: Surfaces, depth: Depth, focal: float, noise: NDArray[np
     """Pixels (h, w) of glossy and of transparent surfaces that get no depth: in patches, where `noise` is low, and
     where a glossy one mirrors the projector."""
     found = surfaces.clear & (noise < NormalDist().inv_cdf(CLEAR_LOST))
-    rows, columns = np.nonzero(surfaces.gloss)
+    glossy = surfaces.gloss > 0.0
+    rows, columns = (np.flatnonzero(glossy.any(axis=axis)) for axis in (1, 0))
     if len(rows):
-        box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         gloss = surfaces.gloss[box]
         mirrored = _facing(depth, focal, *box) > np.cos(np.radians(MIRRORED * gloss))
         found[box] |= (gloss > 0.0) & (mirrored | (noise[box] < quantiles(GLOSS_LOST * gloss)))
@@ -179,7 +192,7 @@ def _unmatched(surfaces: Surfaces, depth: Depth, focal: float, noise: NDArray[np
 
 def _facing(depth: Depth, focal: float, rows: slice, columns: slice) -> Depth:
     """Cosine (n, k) of the angle between a surface's normal and the line of sight, in a piece of `depth` (h, w) [m]."""
-    z = depth[rows, columns]
+    z = depth[rows, columns].astype(np.float64)
     if min(z.shape) < 2:
         return np.zeros(z.shape)
     height, width = depth.shape

@@ -61,7 +61,7 @@ class Shutter:
             picture = exact(*renderer.rgbd(request.camera, width, height))
         else:
             rgb, depth = self._exposed(renderer, sensor, states, request)
-            surfaces = renderer.surfaces(request.camera, width, height)
+            surfaces = renderer.surfaces(request.camera, depth)
             picture = sensor.expose(rgb, depth, focal, round(state.t / DT), surfaces)
         return m.Rgbd(
             t=state.t,

@@ -9,6 +9,7 @@ from scipy.special import ndtri
 from common.geometry import turn_matrix
 from common.rendering.renderer import Surfaces
 from services.camera.sensor import (
+    BLOCK,
     DARK,
     DIM,
     GLARE,
@@ -48,6 +49,14 @@ def test_depths_are_steps_of_the_sub_pixel_disparity() -> None:
     depth = StereoCamera(1).expose(grey(), np.full(SHAPE, 3.0), FOCAL, 5).depth
     steps = np.diff(np.unique(depth))
     assert steps.min() >= 10
+
+
+@pytest.mark.parametrize("first", [BLOCK - 1, BLOCK, BLOCK + 1, BLOCK + 5])
+def test_the_far_side_of_an_edge_has_no_depth_in_whichever_rows_it_lies(first: int) -> None:
+    scene = np.where(np.arange(SHAPE[0]) < first, 1.0, 2.0)[:, None] * np.ones(SHAPE)
+    depth = StereoCamera(1).expose(grey(), scene, FOCAL, 5).depth
+    lost = np.flatnonzero((depth[:, SHAPE[1] // 2 :] == 0).all(axis=1))
+    assert lost.tolist() == [first]
 
 
 def test_what_is_nearer_throws_a_shadow_without_depth_to_its_left() -> None:

@@ -218,12 +218,12 @@ for backend in ("auto", "raycast"):
     ours = Renderer('''{SPECIAL}''', backend)
     ours.backend = backend if backend == "raycast" else ours.backend
     ours.load(ours.data.qpos.tobytes(), b"")
-    seen = ours.surfaces("down", 80, 60)
+    rgb, depth = ours.rgbd("down", 80, 60)
+    seen = ours.surfaces("down", depth)
     assert abs(seen.gloss[30, 50] - 0.8) < 1e-6 and not seen.clear[30, 50], backend
     assert seen.clear[30, 30] and seen.gloss[30, 30] == 0.0, backend
     assert seen.gloss[2, 2] == 0.0 and not seen.clear[2, 2], backend
-    assert ours.surfaces("away", 80, 60) is None, backend
-    rgb, depth = ours.rgbd("down", 80, 60)
+    assert ours.surfaces("away", ours.rgbd("away", 80, 60)[1]) is None, backend
     behind = 2.0 if backend == "auto" else 1.5
     assert abs(depth[30, 50] - 1.5) < 0.002 and abs(depth[30, 30] - behind) < 0.002, (backend, depth[30, 30])
     ours.close()
