@@ -131,11 +131,13 @@ class IoBase:
 
     def take_all(self, topic: Topic[M]) -> list[M]:
         box: Mailbox[M] = self._boxes[topic.key]
+        messages: list[M] = []
+        if not (payloads := box.take()):
+            return messages
         if topic.keep == "latest":
             # A payload that is none must not bring the one before it a second time.
-            return [one] if box.take() and (one := self.latest(topic)) is not None and box.sound else []
-        messages: list[M] = []
-        for payload in box.take():
+            return [one] if (one := self.latest(topic)) is not None and box.sound else messages
+        for payload in payloads:
             try:
                 messages.append(codec.decode(topic, payload))
             except codec.DecodeError as error:

@@ -52,7 +52,9 @@ class Mailbox(Generic[M]):
         return unstamped
 
     def take(self) -> list[bytes]:
-        ready, self._ready = self._ready, []
+        ready = self._ready
+        if ready:
+            self._ready = []
         return ready
 
     def newest(self) -> M | None:

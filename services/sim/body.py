@@ -123,7 +123,9 @@ class Fingers:
             raise ValueError("the model's gripper was not measured: it has no table of widths")
         widths, lengths, _ = table
         order = np.argsort(lengths)
-        self._lengths, self._widths = lengths[order], widths[order]
+        self._shortest, self._longest = float(lengths.min()), float(lengths.max())
+        counted = self._shortest + np.arange(COUNTS + 1) / COUNTS * (self._longest - self._shortest)
+        self._widths: list[float] = np.interp(counted, lengths[order], widths[order]).tolist()
         self._slope = float((widths[-1] - widths[0]) / (lengths[-1] - lengths[0]))
         # Virtual work: what the motor does along its travel, both fingers do along half the width each.
         self.per_newton = abs(self._slope)
@@ -146,17 +148,17 @@ class Fingers:
 
     def advance(self) -> None:
         """Move the set-point towards the goal for 10 ms, no faster than the pads can follow."""
-        now, low, high = float(self._ctrl[0]), self._lengths[0], self._lengths[-1]
-        stands = self._low + (float(self._length[0]) - low) / (high - low) * (self._high - self._low)
+        now, short, long = float(self._ctrl[0]), self._shortest, self._longest
+        stands = self._low + (float(self._length[0]) - short) / (long - short) * (self._high - self._low)
         if (now - stands) * (self._goal - stands) < 0:
             now = stands  # what it pressed with leads beyond what keeps the pads apart
         self._ctrl[0] = now + max(-self._most, min(self._most, self._goal - now))
 
     def width(self) -> float:
         """Distance between the pads [m], with the resolution of the motor's encoder."""
-        low, high = self._lengths[0], self._lengths[-1]
-        count = round((self._length[0] - low) / (high - low) * COUNTS)
-        return float(np.interp(low + count / COUNTS * (high - low), self._lengths, self._widths))
+        short, long = self._shortest, self._longest
+        count = round((float(self._length[0]) - short) / (long - short) * COUNTS)
+        return self._widths[max(0, min(COUNTS, count))]
 
     def rate(self) -> float:
         """How fast the pads move apart [m/s]."""

@@ -78,8 +78,8 @@ class Physics(Body):
         self.obstacles = Obstacles(obstacles, self.model, [w.footprint for w in scene.walls] + scene.footprints)
         # What the world rests under: set-points, how hard they are held, and where obstacles are.
         self._causes = data.ctrl, model.actuator_forcerange, data.mocap_pos
-        self._rested_under = tuple(a.copy() for a in self._causes)
-        self._speeds = data.qvel
+        self._rested_under: list[bytes] = []
+        self._speeds, self._options = data.qvel, model.opt
         self._steps, self._calm = FINE, 0
         self.reset()
 
@@ -91,8 +91,8 @@ class Physics(Body):
     def reset(self) -> None:
         """Set the world to its beginning: objects by the seed's layout, robots at their starts, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
-        self.model.opt.noslip_iterations = 0
-        self._steps, self.model.opt.timestep, self._calm = FINE, DT / FINE, 0
+        self._grips, self._options.noslip_iterations = False, 0
+        self._steps, self._options.timestep, self._calm = FINE, DT / FINE, 0
         for robot, pose in zip(self.robots, self._starts, strict=True):
             robot.at_home(pose)
         for p in self.placements:
@@ -123,11 +123,11 @@ class Physics(Body):
         # The velocity that is fed forward changes evenly too, as a controller of 1 kHz has it: in a step of 10 ms the
         # servos would jerk, and the hand, where it touches something, knock on it with 40 N.
         aims = [(robot.ctrl, begin + (1.0 + robot.lead) * change) for robot, begin, change in moves]
-        ways = [(ctrl, aim, aim - ctrl) for ctrl, aim in aims if not np.array_equal(ctrl, aim)]
+        ways = [(ctrl, aim, aim - ctrl) for ctrl, aim in aims if (ctrl != aim).any()]
         rests = self._rests() and not ways
         steps = self._steps if rests else COARSE if self._alone(moves) else FINE
         if steps != self._steps:
-            self._steps, model.opt.timestep = steps, DT / steps
+            self._steps, self._options.timestep = steps, DT / steps
         for number in range(1, steps + 1):
             for ctrl, aim, way in ways:
                 ctrl[:] = aim - way * ((steps - number) / steps)
@@ -148,15 +148,13 @@ class Physics(Body):
     def _take_out_creep(self) -> None:
         """Have the next step's friction free of creep if a robot holds something."""
         grips = self.data.ncon > 0 and any(robot.contacts.grips for robot in self.robots)
-        self.model.opt.noslip_iterations = NOSLIP if grips else 0
+        if grips != self._grips:
+            self._grips, self._options.noslip_iterations = grips, NOSLIP if grips else 0
 
     def _rests(self) -> bool:
         """True when nothing has moved for CALM ticks, no input has changed, and no check, every GLANCE, is due."""
-        rows = tuple(zip(self._causes, self._rested_under, strict=True))
-        same = all(np.array_equal(now, was) for now, was in rows)
-        if not same:
-            for now, was in rows:
-                was[:] = now
+        under = [cause.tobytes() for cause in self._causes]  # compared as bytes: they are short
+        same, self._rested_under = under == self._rested_under, under
         self._calm = self._calm + 1 if same and float(self._speeds @ self._speeds) < REST**2 else 0
         return self._calm > CALM and self._calm % GLANCE != 0
 

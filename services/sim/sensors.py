@@ -94,7 +94,7 @@ class WheelOdometry:
         rng = self._rng = np.random.default_rng([seed, 11])
         self._true, self.believed = start, start
         self._noise = config.odometry_noise
-        self._scale = 1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)
+        self._scale: list[float] = (1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)).tolist()
         self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
         self._frame = IDENTITY_POSE
         self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
@@ -115,7 +115,7 @@ class WheelOdometry:
         if moved < 1e-7:
             return self.believed
         ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()
-        a, b, c = (self._scale * (1.0 - SLIP * sliding)).tolist()
+        a, b, c = (scale * (1.0 - SLIP * sliding) for scale in self._scale)
         step = dx * a + ex, dy * b + ey, turn * c + self._veer * moved + eturn
         self.believed = compose(self.believed, step)
         return self.believed
