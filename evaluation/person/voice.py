@@ -8,7 +8,7 @@ from scipy import fft
 
 from common.sound import RATE, Samples
 from evaluation.case import Speaker
-from services.speech.speak.voice import Voice
+from services.speech.speak.voice import voice
 
 LEAD, TAIL = 0.3, 1.2
 """Silence [s] before and after a sentence."""
@@ -21,13 +21,8 @@ Floats = NDArray[np.float64]
 
 
 @cache
-def _voice() -> Voice:
-    return Voice()
-
-
-@cache
 def _sentence(text: str) -> Samples:
-    return _voice().speak(text)
+    return voice().speak(text)
 
 
 def utter(text: str, noise: float | None = None, seed: int = 0, speaker: Speaker | None = None) -> Samples:

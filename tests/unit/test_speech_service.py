@@ -18,7 +18,7 @@ from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.recogniser import patterns
 from services.speech.recognise.token_trie import AnyTokens, TokenTrie
 from services.speech.service import SpeechService
-from services.speech.speak.voice import Voice
+from services.speech.speak.voice import voice
 from tests.node import Node
 
 pytestmark = pytest.mark.long
@@ -180,7 +180,7 @@ def test_the_models_are_there_before_the_first_word_where_that_is_wanted(
     begun: list[object] = []
     monkeypatch.setattr(MemoryIo, "submit", lambda io, work, *given, seconds=0.0: begun.append(work))
     Listener(preload=preload)
-    assert len(begun) == 2 * preload and (Voice in begun) is preload
+    assert len(begun) == 2 * preload and (voice in begun) is preload
 
 
 def test_silence_is_an_error_after_the_timeout() -> None:

@@ -7,7 +7,7 @@ from common import topics
 from common.bus.port import Io, Job
 from common.sound import RATE, Samples
 from services.speech.sound_card import Speakers
-from services.speech.speak.voice import Voice
+from services.speech.speak.voice import Voice, voice
 
 CHUNK = RATE // 10
 """Samples published per step: the service steps at 10 Hz."""
@@ -19,7 +19,7 @@ class TtsPlayer:
     def __init__(self, io: Io, speakers: bool, seconds: float, preload: bool = False) -> None:
         self._io, self._seconds = io, seconds
         self._speakers = Speakers() if speakers else None
-        self._voice: Job[Voice] | None = io.submit(Voice) if preload else None
+        self._voice: Job[Voice] | None = io.submit(voice) if preload else None
         self._synthesis: Job[Samples] | None = None
         self._sound = np.zeros(0, np.int16)
         self._sequence = 0
@@ -28,9 +28,9 @@ class TtsPlayer:
     def say(self, text: str) -> None:
         """Begin a sentence; one that is being said is broken off."""
         self.stop()
-        voice = self._voice = self._voice or self._io.submit(Voice)
+        loaded = self._voice = self._voice or self._io.submit(voice)
         self.saying = text
-        self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
+        self._synthesis = self._io.submit(lambda: loaded.result().speak(text), seconds=self._seconds)
 
     def step(self, now: float) -> bool:
         """Play the next tenth of a second; True when the sentence has ended in this step."""

@@ -1,6 +1,7 @@
 """Text to speech with Hibari's bundled voice: https://pypi.org/project/hibari-tts/."""
 
 import re
+from functools import cache
 
 import numpy as np
 
@@ -35,3 +36,9 @@ class Voice:
         except (LookupError, ValueError, TypeError, ArithmeticError, RecursionError):
             return pause  # a text that the library cannot pronounce must not silence the robot for good
         return np.concatenate([resample(audio * 32000, SAMPLE_RATE), pause])
+
+
+@cache
+def voice() -> Voice:
+    """The voice, shared by all that speak in one process."""
+    return Voice()
