@@ -152,6 +152,16 @@ def cell_means(points: Array, side: float) -> tuple[Array, NDArray[np.intp], NDA
     return sums / counts[:, None], first, counts
 
 
+def quantile(values: Array, share: float) -> float:
+    """The value below which a `share` of some (n,) lies, as `np.quantile`, whose checks take ten times as long."""
+    at = (len(values) - 1) * share
+    low = int(at)
+    high, rest = min(low + 1, len(values) - 1), at - low
+    parts = np.partition(values, (low, high))
+    a, b = float(parts[low]), float(parts[high])
+    return a + (b - a) * rest if rest < 0.5 else b - (b - a) * (1.0 - rest)
+
+
 def yaw_matrix(yaw: float) -> Array:
     """Rotation matrix (3, 3) by `yaw` about z."""
     c, s = math.cos(yaw), math.sin(yaw)

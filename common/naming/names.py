@@ -3,6 +3,7 @@
 import difflib
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 
 from common.household import Household
 from common.kinds import KINDS, kind_of
@@ -24,10 +25,13 @@ ALIKE = {
 """Words that a colour may turn out to have from nearer and in better light."""
 
 
+REMEMBERED = 4096
+"""Phrases whose words are remembered [count]; chosen: more than a household has names."""
 _OF = re.compile(rf"\b({'|'.join(KINDS)}) of (?:(?:the|a|an|my|some) )?(\w+)\b")
 """A kind before what it is of: it is the last word otherwise."""
 
 
+@lru_cache(REMEMBERED)
 def normalise(text: str) -> str:
     """Lower case, no punctuation, no articles, the word for the kind last: a ball of wool is a "wool ball"."""
     words = _OF.sub(r"\2 \1", re.sub(r"[^a-z0-9 ]+", " ", text.lower())).split()

@@ -43,8 +43,9 @@ def path_to(node: Behaviour) -> list[PathNode]:
     """The path from the root to a node, without the root."""
     path: list[PathNode] = []
     while node.parent is not None:
-        alike = _alike(node.parent, _id(node))
-        path.append(PathNode(_id(node), alike.index(node), getattr(node, "used", 0)))
+        name, siblings = _id(node), node.parent.children
+        ordinal = sum(_id(child) == name for child in siblings[: siblings.index(node)])
+        path.append(PathNode(name, ordinal, getattr(node, "used", 0)))
         node = node.parent
     return path[::-1]
 

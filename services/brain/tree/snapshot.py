@@ -1,6 +1,7 @@
 """The behaviour tree as a message for `brain/tree`."""
 
 from collections.abc import Sequence
+from functools import cache
 from weakref import WeakKeyDictionary
 
 from py_trees.behaviour import Behaviour
@@ -29,12 +30,16 @@ class Seen:
         return changed
 
 
+@cache
+def _kind(kind: type[Behaviour]) -> str:
+    return "Decorator" if issubclass(kind, Decorator) else kind.__name__
+
+
 def node_of(behaviour: Behaviour) -> TreeNode:
     """A behaviour and all below it."""
-    kind = "Decorator" if isinstance(behaviour, Decorator) else type(behaviour).__name__
     return TreeNode(
         name=behaviour.name,
-        type=kind,
+        type=_kind(type(behaviour)),
         status=behaviour.status.value,
         detail=behaviour.feedback_message,
         children=[node_of(child) for child in behaviour.children],

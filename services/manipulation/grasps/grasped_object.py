@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from common.geometry import Array, yaw_matrix
+from common.geometry import Array, quantile, yaw_matrix
 from common.kinds import kind_of
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
@@ -92,7 +92,7 @@ class GraspedObject:
         half = float(np.abs((turn @ yaw_matrix(self.yaw))[2]) @ self.size) / 2
         if self.points is None:
             return half
-        return min(half, float(np.quantile(np.abs(self.points @ turn[2]), SEEN)))
+        return min(half, quantile(np.abs(self.points @ turn[2]), SEEN))
 
     def box(self, lower: float = 0.0) -> tuple[Array, Array, Array]:
         """Half extents (3,) [m] of the object's collision box along its own axes, or the hand's where those are only

@@ -47,10 +47,10 @@ def tipped(held: GraspedObject, spot: tuple[float, float], bearing: float, lean:
     back least; empty where it would fall back, or over, from there or on the way there."""
     axis = np.array([math.sin(bearing), -math.cos(bearing), 0.0])
     tips = [turn_matrix(share * lean * axis) for share in ON_THE_WAY]
-    found = []
+    found, upright = [], held.reaches(np.eye(3))
     for spin in np.linspace(0.0, math.tau, SPINS, endpoint=False):
         turns = [tip @ yaw_matrix(float(spin)) for tip in tips]
-        rises = [held.reaches(turn) - held.reaches(np.eye(3)) for turn in turns]
+        rises = [held.reaches(turn) - upright for turn in turns]
         # Lower again than it was on the way, it is past its balance.
         falls = max(*map(abs, rises), 2 * (max(rises) - rises[-1]))
         found.append((falls, float(spin), turns[-1]))

@@ -12,6 +12,7 @@ from scipy import ndimage
 from common.geometry import Mask
 from services.perception.segments.dark import DARK, Pixels
 from services.perception.segments.segment import RIM
+from services.perception.views.masks import dilated, eroded
 from services.perception.views.view import View
 
 OTHER, DARKER = 0.12, 0.3
@@ -27,8 +28,6 @@ of a comb's; a surface shows hardly any patch of another colour that is none."""
 THIN, HIGHER = 0.02, 0.2
 """Height [m] up to which a thing lies flat, so that parts of it may not stand out, and the share of its pixels that may
 be higher: the foot of what stands is seen, and the table beside it is tinted by it."""
-LINE = 3
-"""Width [pixels] of the thinnest patch. Chosen: a pencil's at 1.2 m."""
 ALIKE = 25
 """Pixels that share their noise: stereo cameras match windows of about 5 x 5."""
 
@@ -65,9 +64,9 @@ def patches(view: View, pixels: NDArray[np.intp], heights: NDArray[np.float32], 
 
 
 def _wide(mask: Mask) -> Mask:
-    """A mask (h, w) without its lines of less than LINE: the seams between boards."""
-    opened = ndimage.binary_opening(mask, np.ones((LINE, LINE)))
-    return np.asarray(mask & ndimage.binary_dilation(opened, np.ones((3, 3))))
+    """A mask (h, w) without its lines of less than three pixels: the seams between boards are that thin, and a pencil
+    at 1.2 m is not."""
+    return mask & dilated(dilated(eroded(mask)))
 
 
 def _of_another_colour(rgb: NDArray[np.float32], level: Mask) -> tuple[Mask, Mask]:

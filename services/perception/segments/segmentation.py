@@ -185,6 +185,8 @@ def _on(
     by_walls = np.zeros(view.shape, bool)
     by_walls.ravel()[cloud.pixels] = True
     cloud = cloud.outside(near.walls)
+    if len(cloud.pixels) < MIN_PIXELS:
+        return outlined
     by_walls.ravel()[cloud.pixels] = False
     over_it = np.zeros(view.shape, bool) if looked_at is None else looked_at.copy()
     over_it.ravel()[cloud.pixels] = True
