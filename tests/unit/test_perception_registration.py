@@ -11,7 +11,7 @@ from common.household import load_household
 from common.messages import ShapeFamily
 from services.perception.detection import Detection
 from services.perception.tracking.object_tracker import ObjectTracker
-from services.perception.tracking.registration import shift
+from services.perception.tracking.registration import laid_over, shift
 from services.perception.unlisted import thinned
 from services.perception.views.view import View
 
@@ -108,3 +108,17 @@ def test_what_was_taken_for_one_without_a_shape_is_the_things_that_the_wrist_cam
     found = tracker.objects()
     assert len(found) == things
     assert things == 1 or {o.shape for o in found} == {"box", "round"}
+
+
+def test_a_view_is_laid_where_it_shows_the_same_sides_and_the_far_side_stays_where_it_is() -> None:
+    rng = np.random.default_rng(0)
+
+    def arc(middle: tuple[float, float, float]) -> Array:
+        turn, up = rng.uniform(-1.2, 1.2, 600), rng.uniform(0.0, 0.1, 600)
+        return np.add(np.stack([-0.04 * np.cos(turn), 0.04 * np.sin(turn), up], axis=1), middle)
+
+    front = arc((0.0, 0.0, 0.0))
+    moved = laid_over(front, arc((0.005, 0.004, 0.0)))
+    assert abs(float(np.hypot(moved[:, 0], moved[:, 1]).mean()) - 0.04) < 0.001
+    behind = arc((0.015, 0.0, 0.0))
+    assert laid_over(front, behind) is behind, "what is so thin stays so"

@@ -11,7 +11,7 @@ from common.messages import End, ShapeFamily
 from common.naming.likeness import TAKEN_FOR
 from services.perception.detection import Detection
 from services.perception.shapes.measurement import LEVEL
-from services.perception.tracking.registration import unlike
+from services.perception.tracking.registration import laid_over, unlike
 from services.perception.unlisted import MOST_POINTS, thinned
 from services.perception.views import colour
 
@@ -94,7 +94,8 @@ class Descriptor:
         elif d.distance < self.nearest * BLURRED:
             # Taken for another shape it has another middle: then it is where it was on the map.
             on_map = self.points + np.subtract(was, now), d.points - now
-            self.points = _merged(*min((self.points, seen), on_map, key=lambda pair: unlike(*pair)))
+            old, new = min((self.points, seen), on_map, key=lambda pair: unlike(*pair))
+            self.points = _merged(old, laid_over(old, new))
             self.nearest = min(self.nearest, d.distance)
 
     def turned(self, d: Detection) -> float:
