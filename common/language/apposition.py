@@ -2,8 +2,9 @@
 
 import re
 
+from common.kinds import KINDS
 from common.language.exchange import COLOURS, PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.noun_phrase import WHICH
 from common.language.politeness import without_politeness
@@ -45,6 +46,13 @@ _LABELLED = re.compile(
     re.IGNORECASE,
 )
 """Things behind the name of the place where they are to go: `toy box: the red ball`."""
+_SENTENCE = re.compile(r"[^.;!?]+[.;!?]*\s*|[.;!?]+\s*")
+_ROUTE = re.compile(r"^(?P<head>[^:,]{3,40}):\s+(?P<stops>[^.;!?:]+,[^.;!?:]+)[.!]*\s*$")
+_BACK = re.compile(
+    r"^(?:(?:back|home|here|me)(?: again)?|(?:back |home )?(?:here|home|to me|to us)(?: to me| again)?)$"
+)
+_IN_ORDER = re.compile(r"^in (?:that|this) order$")
+"""Places one after the other behind what tells that a way follows."""
 _RUBBISH = frozenset({"rubbish", "trash", "garbage"})
 
 
@@ -57,8 +65,30 @@ def with_shared_noun(text: str) -> str:
 
 
 def put_where_labelled(text: str, is_place: IsPlace) -> str:
-    """`toy box: the red ball` as `put the red ball in the toy box`."""
-    found = _LABELLED.match(text.strip())
+    """`toy box: the red ball`, in each sentence, as `put the red ball in the toy box`, `red mug: desk` likewise.
+
+    Of places alone, `three stops: desk, bookshelf, me`, it makes the way to one after the other.
+    """
+    return "".join(_as_route(s, is_place) or _labelled(s, is_place) for s in _SENTENCE.findall(text.strip())) or text
+
+
+def _as_route(text: str, is_place: IsPlace) -> str:
+    """`the rounds: kitchen, bedroom, back to me` as going to each of them; "" of what is no way."""
+    found = _ROUTE.match(text.lower())
+    if found is None or not HANDLING.isdisjoint(found["head"].split()) or is_place(tuple(found["head"].split())):
+        return ""
+    stops = [re.sub(r"^(?:and |then )*", "", stop.strip()) for stop in re.split(r",| and ", found["stops"])]
+    ways = [
+        "come back" if _BACK.match(stop) else f"go to the {bare}" if is_place(tuple(bare.split())) else ""
+        for stop in stops
+        if stop and not _IN_ORDER.match(stop)
+        for bare in [re.sub(r"^(?:to )?(?:the |my )?", "", stop)]
+    ]
+    return f"{', then '.join(ways)}. " if len(ways) > 1 and all(ways) else ""
+
+
+def _labelled(text: str, is_place: IsPlace) -> str:
+    found = _LABELLED.match(text)
     place = found["place"].lower() if found else ""
     names = found is not None and DETERMINERS.isdisjoint(place.split())
     if found is None or not names or verb_first(without_politeness(found["things"].lower())):
@@ -66,6 +96,8 @@ def put_where_labelled(text: str, is_place: IsPlace) -> str:
     things = re.sub(r",? please$", "", found["things"])
     if place in _RUBBISH:
         return f"throw away {things}{found['rest']}"
+    if place.split()[-1] in KINDS and is_place(tuple(things.lower().split())) and not is_place(tuple(place.split())):
+        return f"put the {place} on the {things}{found['rest']}"
     return f"put {things} on the {place}{found['rest']}" if is_place(tuple(place.split())) else text
 
 

@@ -9,6 +9,7 @@ from common.language.politeness import without_lead, without_politeness
 from common.language.speeches import LONG_SPEECH, TO_BE_SAID
 
 _FILLER = re.compile(
+    r",\s*(?:duck|love|pet|hen|dear|petal|poppet|mate|pal)\s*(?=, (?:the|a|my|i|we)\b)|"
     r"\s*\b(?:u+m+|(?<!^uh )u+h+(?!,? huh\b| uh$)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
     r"|\b(?:u+r*gh+|e+w+|yu+ck|yikes|phew|blimey|crikey|gosh)\b[,!]*"
     r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it)|"

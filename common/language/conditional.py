@@ -4,6 +4,7 @@ import re
 
 from common.language.exchange import replaced, verb_first
 from common.language.lexicon import COMMANDING, HANDLING
+from common.language.normalise import infinitive
 from common.language.politeness import without_politeness
 
 REQUESTS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
@@ -58,6 +59,11 @@ _FAILING = re.compile(
 """What is wanted, and what instead where there is none."""
 _FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
 _OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
+_WISHED = re.compile(
+    r"^if you (?:were to )?(?:(?:went|came|nipped|popped)(?: over| along)? and )?(?P<verb>[a-z]+) (?P<rest>.+?),? "
+    r"(?:i|we|he|she|it|that) would (?:feel|be|sleep|rest|make|help|mean|do)\b.*$"
+)
+"""What somebody would like to be done: `if you stood by the door i would feel safer`."""
 _ELSE = re.compile(
     r"(?:,| and| or| but|;|\.|(?<=\w)(?= otherwise))+\s*(?:otherwise|if (?:not|there (?:is|are) (?:none|not any|"
     r"no))|or else|else),?\s+"
@@ -96,6 +102,8 @@ def conditional(text: str) -> str:
     text = re.sub(r"^only (?=\w+ .+ (?:if|when|unless) )", "", text)
     text = _IF_SO.sub(r"if \g<condition> , ", _without_reason(text))
     bare = without_politeness(text)
+    if (found := _WISHED.match(bare)) and (verb := infinitive(found["verb"], REQUESTS)) in REQUESTS:
+        return f"{verb} {found['rest']}"
     if found := _CONDITION.match(bare):
         word = "unless" if found["word"] == "unless" else "if"
         rest = _ELSE.sub(" . otherwise ", found["rest"])

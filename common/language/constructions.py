@@ -134,7 +134,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"go to \1"),
         (rf"(?:{one_of('put')}) ((?:the|my|our|a|an|that) .+?) (?:(?:over|across|along|up) )*(to|into|onto|on) {NP}",
          r"take \1 \2 \3"),
-        (rf"(?:it|i|we) would (?:\w+ ){{1,4}}?(?:it )?if {NP} (?:was|were|is) (?:back )?({TO_PLACE}|{_BESIDE}) {NP}",
+        (rf"(?:it|i|we) would (?:\w+ ){{1,4}}?(?:it )?if {NP} (?:was|were|is|stood|sat|lay) (?:back )?"
+         rf"({TO_PLACE}|{_BESIDE}) {NP}",
          r"put \1 \2 \3"),
         # Two places, one of them beside something.
         (rf"(put|place|set|move|lay|stick|pop) {NP} (?:that|which) (?:is|stands|lies) (?:on|in|at) "
@@ -143,7 +144,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(put|place|set|move|lay|drop|leave|stick|pop) (?:down )?{NP}(?: down)? (?:on|in|at|onto) {NP} "
          rf"(?:right )?{_BESIDE} {NP}",
          r"\1 \2 next to \4 on \3"),
-        (rf"(get|take|remove|move) {NP} (?:off|from|out of) {NP} and {TO_PLACE} {NP}", r"put \2 on \3 in \4"),
+        (rf"(get|take|remove|move|clear) {NP} (?:off|from|out of) {NP} and (?:(?:put|place|set) (?:it|them) )?"
+         rf"{TO_PLACE} {NP}", r"put \2 on \3 in \4"),
         # What there is of a kind.
         (r"(\w+)(?: me)? (?:whatever|(?:all )?what|anything that|all that|(?:all )?the stuff that) (?:is|lies|"
          r"stands) (.+)", r"\1 everything \2"),

@@ -45,7 +45,7 @@ _HEARD = tuple(
         (r"^wears (?=(?:the|my)\b)", "where is "), (r"^fined (?=(?:the|my)\b)", "find "),
         (r"\bwrite now\b", "right now"), (r"\b(look|looking|search) four (?=\w)", r"\1 for "),
         (r"\b(come|go) bag\b", r"\1 back"), (r"(?<=\w )o (?=(?:the|them)\b)", "of "),
-        (r"\b((?:the|my) (?:\w+ )?\w+) and all[.!]?$", r"\1 too"),
+        (r"\b((?:the|my|its|their) (?:\w+ )?\w+) and all[.!]?$", r"\1 too"), (r"(?<=\w) ?'un(s?)\b", r" one\1"),
     )
 )  # fmt: skip
 """Words that sound like those of a command and make no sense where they stand."""

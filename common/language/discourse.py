@@ -118,6 +118,7 @@ _NOTED_BEHIND = re.compile(
     r"[ ,.!]*(?:please)?$"
 )
 """A statement of where things belong that is to be kept."""
+_TWICE = re.compile(r"^(from now on )(?:from now on )+")
 _HEADING = re.compile(
     r"^(?:(?:please|can you|could you|would you|now|so) )*(?:tidy|clear|clean|sort|empty)(?: up| off| out)? "
     r"(?:the|my|our) \w+(?: \w+)?: (?!(?:both|all|each|every\w*|the lot|it all) )"
@@ -137,7 +138,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     told = with_preamble(with_what_is_missed(expand(normalise(_ANNOUNCED.sub("", text), ",;.!?:"))), is_place)
     whole = begun_anew(without_fillers(as_speech(re.sub(r":(?=\s)", ",", told))))
     whole = _ONCE_THERE.sub(lambda found: " and " if found.end() < len(whole.rstrip(".! ")) else "", whole)
-    whole = _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole))
+    whole = _TWICE.sub(r"\1", _NOTED_BEHIND.sub(r"from now on \g<said>", _NOTED.sub("from now on ", whole)))
     whole = _AND_TELL.sub(r"\g<look>", whole)
     whole = _GO_AND_LOOK.sub(
         r"go and look in \g<place>", _GO_AND_CHECK.sub("check ", _GO_AND_ASK.sub("tell me ", whole))
@@ -150,7 +151,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _TOP_OF.sub(r"\g<on> ", _FLOOR_OF.sub(r"\g<on> the \g<room> floor", whole))
     if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
         return ["never mind"]
-    whole = without_purpose(whole)
+    whole = without_purpose(whole.rstrip(" ."))
     if verb_first(without_politeness(whole)):
         whole = _WISH_BEHIND.sub(".", whole)
     whole = with_whereabouts(whole)

@@ -16,6 +16,9 @@ _BELONG = (
 )
 _MUST = "(should | must | ought to | have to | are to)"
 _HOUSE = "[in (this | our | my) (house | home | household | family | flat | place)]"
+_BELONGING = "(go | goes | going | belong | belongs | belonging | live | living | are kept | being kept)"
+_FORGET = "(forget | ignore | scrap | drop | cancel | wipe)"
+_WHAT_ABOUT = "(what i (said | told you) | (that | the) (thing | business | bit | stuff)) about"
 _AGAIN = "[any (more | longer) | anymore | now]"
 _NOTE = "(remember | know | learn | note | bear in mind)"
 _TIDYING = "[(when | whenever) you (tidy | clear) [up] | when (tidying | clearing) [up]]"
@@ -56,12 +59,13 @@ TOLD: tuple[Wording, ...] = (
         f" | there is no (fixed | set | special | particular) (place | home | spot) for <words> {_AGAIN}"
         f" | stop (taking | bringing | moving) <words> to <spot> as a rule"
         f" | (no more | no | drop the | cancel the) (rule | rules) (about | for | on) <words>"
-        f" | (forget | ignore) what i (said | told you) about <words>"
+        f" | {_FORGET} {_WHAT_ABOUT} [where] <words> {_BELONGING} [{_ON} <spot>]"
+        f" | {_FORGET} {_WHAT_ABOUT} <words>"
         f" | (forget | unlearn) (where | that) <words> {_BELONG} [{_ON} <spot>]",
     ),
     Wording(
         "rule_always",
-        f"[no] {_ALWAYS} [please] (put | keep | place | store | leave | sort) <thing> {_ON} <spot>"
+        f"[no] {_ALWAYS} [please | i | we] (put | keep | place | store | leave | sort) <thing> {_ON} <spot>"
         f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"
         f" | [no] {_ALWAYS} <thing> {_BELONG} {_ON} <spot> | [no] <thing> {_ALWAYS} {_BELONG} {_ON} <spot>"
         f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}"

@@ -45,7 +45,8 @@ FAMILY = (
     "(wife | husband | partner | mother | father | mum | mom | mummy | mommy | mama | dad | daddy | papa | son"
     " | daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | granny | gran"
     " | nana | grandad | boy | girl | family | brother | sister | aunt | auntie | uncle | nephew | niece | cousin"
-    " | friends | neighbour | neighbours | visitor | visitors | colleague | colleagues | flatmate | twins | folks)"
+    " | parents | grandparents | friends | neighbour | neighbours | visitor | visitors | colleague"
+    " | colleagues | flatmate | twins | folks)"
 )
 PEOPLE = f"([(my | our | the)] {FAMILY} | them | everybody | everyone | people | anybody | anyone | the others)"
 PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"

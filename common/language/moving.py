@@ -38,8 +38,9 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "put_near",
         f"({PUT}) <thing> {BACK} {NEAR} <spot>"
-        f" | <thing> (belongs | belong | goes | go | should go | should stand | has to go | needs to "
-        f"go) (next to | near | beside | close to) <spot>",
+        f" | <thing> (belongs | belong | goes | go | (should | must | ought to | has to | have to | needs to | is to"
+        f" | can) (go | stand | be | lie | sit)) (next to | near | beside | close to) <spot>"
+        f" | keep <thing> (next to | near | beside | close to) <spot>",
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
     ),
     Wording(
@@ -144,6 +145,7 @@ MOVING: tuple[Wording, ...] = (
     Wording("get", f"({FETCH} | get) <thing>"),
     Wording("wish_at", f"{PERSON} {WISH} <thing> [to be] {ON} <spot>"),
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
+    Wording("put_near", f"{PERSON} {WISH} <thing> [to be] (next to | beside | close to) <spot>"),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
     Wording(

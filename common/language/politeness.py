@@ -200,7 +200,7 @@ _ENDINGS = (
     r"(?:and |but )*do not (?:let (?:it )?go(?: of it)?|bring it)|(?:and |but |just )*hold (?:on to |onto )?it|"
     r"or (?:so help me|else)|by the time .+|(?:good)?bye(?: bye)?|"
     r"and leave (?:it|them)(?: there| alone)?|(?<!are )(?<!is )you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
-    "(?:please |and )*(?:remember|note|memori[sz]e) (?:that|it|this|everything)|"
+    "(?:please |and )*(?:remember|note|memori[sz]e) (?:that|it|this|everything)|please (?:remember|note)|"
     "(?:and |please )*do not (?:you )?forget (?:that|it)|"
     "one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "

@@ -5,7 +5,7 @@ import re
 from common.language.apposition import apposed, refined
 from common.language.contrasts import CONTRAST, contrasted, instead, with_qualities
 from common.language.exchange import PREPOSITIONS, IsPlace, replaced, verb_first
-from common.language.lexicon import A_VERB, COMMANDING, HANDLING
+from common.language.lexicon import A_VERB, A_WISH, COMMANDING, HANDLING
 from common.language.meaning import VERBS
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
@@ -91,6 +91,7 @@ _WILL_DO = re.compile(
     r"(?:will|would) (?:do|be (?:fine|ok|okay|good|enough))$"
 )
 """Something of a kind, and which one is as good as any."""
+_WISHES = re.compile(rf"^{A_WISH} (?:something|an?|some)\b")
 _KIND_FIRST = re.compile(
     r"^(?:m+ )?(?:(?:i|we) (?!(?:do )?not\b)[^,]*|(?:bring|get|fetch|give) (?:me |us )?)\b"
     r"(?:an?|some|something)(?: \w+)? "
@@ -136,8 +137,11 @@ def settled(text: str, is_place: IsPlace) -> str:
     text = _without_spared(_SPARED_FIRST.sub(r"\g<said> but \g<spared>", text))
     if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
         text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
-    if (found := _WILL_DO.match(text)) and verb_first(without_politeness(found["said"])):
-        text = replaced(without_politeness(found["said"]), found["one"].strip(), is_place) or text
+    if found := _WILL_DO.match(text):
+        if verb_first(without_politeness(found["said"])):
+            text = replaced(without_politeness(found["said"]), found["one"].strip(), is_place) or text
+        elif _WISHES.match(found["said"]):
+            text = f"bring me {found['one'].strip()}"
     if found := _KIND_FIRST.match(text):
         text = f"bring me {found['one']}"
     if found := _NOT_THERE.match(text):

@@ -2,6 +2,7 @@
 
 import re
 
+from common.kinds import KINDS
 from common.language.lexicon import A_VERB, PAIRED, TO_GO
 from common.naming.colours import COLOURS
 
@@ -12,6 +13,17 @@ _PREPOSITION = (
 )
 _LOOKS = rf"(?:{'|'.join(sorted(COLOURS))}|small|big|little|large|tall|other)\b"
 """A word of colour or size: the name of a thing that begins with one may have its noun from a thing before."""
+_COLOUR = rf"(?:{'|'.join(sorted(COLOURS))})"
+_KIN = "(?:brother|sister|mate|cousin|twin|friend|pal|buddy|partner|companion|counterpart|sibling|neighbour)"
+"""What somebody calls another thing of the same kind: `its green mate`."""
+_APART = r"(?:side by side|next to (?:each other|one another)|beside each other|in a row|together)"
+_PLACED = r"(?:stood|stand|be|were|was|are|sat|sit|placed|put|lined up)"
+_TO_DO = (
+    r"(?:[,.;]|,? and| so)* (?:so )?(?:(?:please|can you|could you|would you) )*"
+    r"(?:move|take|put|bring|carry|do|see to) (?:it|them|that)(?: there| over)?[.?!]*(?: please[.!]*)?$"
+)
+"""That something is to be done, said behind what is to be done."""
+_HOME = "(?:house|home|family|household|flat)"
 _CARDINALS = tuple(enumerate(("one", "two", "three", "four", "five", "six"), 1))
 SHORTER = tuple(
     (re.compile(words), plain)
@@ -21,9 +33,11 @@ SHORTER = tuple(
         (r"\b(anything|something|nothing) at all\b", r"\1"),
         *((rf"(?<![\w:.] )(?<![:.])\b{n} (?=[a-z])|(?<=[a-z] ){n} (?=[a-z])", f"{word} ") for n, word in _CARDINALS),
         (r"\b(?:a few|several) (?!times\b|\w+ ago\b)(?=[a-z]+s\b)(?!seconds\b|minutes\b|hours\b|moments\b)", "some "),
-        (r"(?<=\w),(?= from (?:now|today) on\b)", ""),
+        (r"(?<=\w),(?= from (?:now|today) on\b)", ""), (r"\b(from (?:now|today) on), (?=\w)", r"\1 "),
+        (r"^from (?:now|today) on (?:(?:i|we|you)(?: will| shall| can)? )?(?=(?:call|name)\b)", ""),
+        (rf"\b(?:its|their|the|my|his|her) ({_COLOUR}) {_KIN}\b", r"the \1 one"),
         (r"\b(?:just|right) now\b", "now"),
-        (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside)\b)", "what is "),
+        (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside|to the)\b)", "what is "),
         (r"\b(how many \w+) (?:stand|lie|sit) (?=(?:on|in|at)\b)", r"\1 are "),
         (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
         (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright )over) "
@@ -34,6 +48,7 @@ SHORTER = tuple(
         (r"\b(wh(?:at|ere|o|y|ich)|how) (?:on earth|in the world|the (?:heck|hell|devil)|exactly|actually)\b", r"\1"),
         (rf"\b(?:a|the|my|our|some|that) pair of (?=(?:\w+ )?{PAIRED}\b)", "the "), (r"\ba pair of (?=\w+s\b)", "two "),
         (r"\b(put|place|set|take|bring|carry|move|leave|drop) both (?=(?:to|on|in|into|onto)\b)", r"\1 them "),
+        (r"[,.;] (?:so )?both(?: of them)? (?=(?:in|into|to|on|onto) (?:the|my|our)\b)", ". put them "),
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)|\bfor the life of (?:me|us)\b", ""),
         (r"\bto wherever (?=.+ (?:is|are|stands)$)", "to where "),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
@@ -135,10 +150,21 @@ SHORTER = tuple(
             r"is \1 still ",
         ),
         (r"\b(call|name) (.+?) from (?:now|today) on[.!]?$", r"\1 \2"),
+        (r",? (?:just )?so (?:that )?you know[.!]?$", ""), (rf"\b(call .+?) in (?:this|our|my) {_HOME}\b", r"\1"),
+        (rf"^(?:in (?:this|our|my) {_HOME} )?((?:the|my|our|this|that) (?:\w+ ){{1,2}}?)(?:here )?(?:(?:answers|"
+         r"listens) to|goes by|is known (?:by|as))(?: the name(?: of)?)? (?=\w)", r"\1is called "),
+        (r"^((?:the|my|our|this|that) (?:\w+ )?\w+)'s name (?:is|shall be|will be|should be) (?=\w)",
+         r"\1 is called "),
+        (r"^((?:the|my|our|that|this) \w+ \w+)\? (?:that|this|it) is (?=(?:my|our)\b)", r"\1 is "),
+        (
+            r"^(?:nobody|no one) (?:uses|calls (?:it|this|that)|says)(?: the(?: name)?)? (.+?) (?:any ?more|any longer|"
+            r"now)\b.*$",
+            r"forget the name \1",
+        ),
         (
             r"^(?:what (?:i|we) (?:told you|said) about|(?:that|the) (?:business|thing) (?:about|with)|"
             r"(?:the|your|that) rules? (?:about|for|with|on))(?: where)? (?:the )?(\w+)\b.*?\b"
-            r"(?:forget|do not follow|no longer|not apply|ignore|drop|not valid|cancel\w*)\b.*$",
+            r"(?:forget|do not follow|no longer|not apply|ignore|drop|scrap|wipe|erase|not valid|cancel\w*)\b.*$",
             r"forget the rule about \1",
         ),
         (
@@ -154,7 +180,6 @@ SHORTER = tuple(
             r"everything|it all|them all|all of it) away\b",
             r"\1",
         ),
-        (r"[,.;] (?:so )?both(?: of them)? (?=(?:in|into|to|on|onto) (?:the|my|our)\b)", ". put them "),
         (
             r"\b(?:take|carry|bring|move) ((?:the|my) \w+(?: \w+)?) (?:through |over |along |across )?"
             r"(?:to|into) the (\w+)(?: room)? and "
@@ -174,7 +199,9 @@ SHORTER = tuple(
             "where are you going",
         ),
         (
-            r"\bit was (?:fine|better|good|nicer|all right|okay|ok|best)(?: just| right)? where it was\b",
+            r"\b(?:it|that) (?:was|looked|stood) (?:fine|better|good|nicer|all right|okay|ok|best)(?: just| right)? "
+            r"where it (?:was|stood)(?: before)?\b|"
+            r"\bi (?:liked|preferred) it (?:better |more )?where it (?:was|stood)(?: before)?\b",
             "put it back where it was",
         ),
         (r"\bboth (?=(?:go|belong|need|should|must|have to)\b)", ""),
@@ -240,6 +267,28 @@ SHORTER = tuple(
         (r",? on (?:the|your) way to (?=the|my|our)", " then go to "),
         (r"[.;,]? (not (?:the|a|my) \w+ one)[.;,] (?=(?:the|a|my) )", r", \1, "),
         (r"\b(inside|off|outside) of\b", r"\1"),
+        (rf"\b({_PLACED}) {_APART},? (?=(?:on|in|at)\b)", r"\1 "),
+        (r"^(?!.*\b(?:what|does|did|do)\b)(.*\b(?:on|in|by) (?:the|my|our) \w+(?: \w+)?),? say[.!]?$", r"\1"),
+        (r"(?<=[.!;]) off you (?:go|pop|trot|toddle)[.!]*$", ""),
+        (r"^does (anything|something) (?:\w+ )?(?:stand|lie|sit|live) (?=(?:on|in|at)\b)", r"is \1 "),
+        (rf"(\b(?:the|a|my|that) |\b)({'|'.join(sorted(KINDS))})[.;!?]+ (?:the|my) (\w+) one(?=[,.;!?]|$| "
+         r"(?:please|on|in|from|by|with)\b)", r"the \3 \2"),
+        (
+            r"^(.+? (?:should|must|has to|have to|ought to|belongs?|goes?|go|needs?)\b[^,.;]* (?:(?:on|in|at|to|"
+            rf"beside) (?:the|my|our) [^,.;]+?|\w+ing))(?: tonight| now| today)?{_TO_DO}",
+            r"\1",
+        ),
+        (
+            r"^(?:if|when) (?:i|you|we|one) (?:am |are )?(?:stand(?:s|ing)?|look(?:s|ing)?|faces?|facing)"
+            r"(?: (?:at|facing|in front of|towards))? ((?:the|my|our) \w+(?: \w+)?), ((?:what|which) [^?.]+)",
+            r"\2 on \1",
+        ),
+        (r" (?:if|when) (?:i|you|we) (?:am |are )?(?:face|facing|look at|looking at) (?:the|my|our) \w+(?=[?.]|$)", ""),
+        (
+            r"^(?:out )?of the (?:\w+ )?(\w+?)(?:(?<=x)es|s),? (?:(?:i|we) (?:would (?:like|go for|have|take|prefer|"
+            r"love)|want|need|will (?:have|take))|(?:bring|get|fetch|give) me) the one\b",
+            r"bring me the \1",
+        ),
         (r"\bone more(?= please$|$)", "another one"),
         (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),

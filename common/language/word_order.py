@@ -33,6 +33,8 @@ _MOVED = re.compile(
 )
 
 
+_FROM = re.compile(r" (?:in|on|at) (?=(?:the|my|our) )")
+"""Before where a thing is now, of which it is told where it is to be."""
 _ASKED_TO_GO = re.compile(
     rf"^(?:can|could|might|may|should|would) {NP} (?:go|come|get|move)(?: back| over)* ({TO_PLACE}) {NP}$"
 )
@@ -108,7 +110,7 @@ def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
         home = found[2] == "to" and found[3] in ("me", "us")
         yield f"bring me {found[1]}" if home else f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     if (found := _MOVED.match(text)) and words[0] != "anything":
-        yield f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
+        yield f"put {_FROM.sub(' from ', found[1])} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     yield from _topic(words)
     for pattern, result in (*CONSTRUCTIONS, *(() if verbs_only or words[0] in COMMANDING else VERBLESS)):
         if found := pattern.match(text):

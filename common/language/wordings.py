@@ -26,12 +26,16 @@ WORDINGS: tuple[Wording, ...] = (
     *REFUSALS,
     Wording("refuse", "(if | when | unless) <words>", reason="I cannot wait for conditions"),
     Wording(
-        "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)"
+        "open_hand",
+        "(open [up] | let go [of] | release) [the | your | that | those] (gripper | hand | fingers | claw) [of yours]"
+        " | (spread | stretch | unclench | loosen | relax | slacken) (the | your | those) (fingers | hand | claw)"
         " | (set | put) [the | your] (gripper | hand) to open",
         heard="open (the | your) (hand | gripper)",
     ),
     Wording(
-        "close_hand", "(close | shut) [the | your] (gripper | hand | fingers) | make a fist"
+        "close_hand",
+        "(close | shut) [the | your | that | those] (gripper | hand | fingers | claw) [of yours] | make a fist"
+        " | (pinch | squeeze | put) (the | your | those) fingers [of yours] together"
         " | (set | put) [the | your] (gripper | hand) to closed",
         heard="close (the | your) (hand | gripper)",
     ),
@@ -60,7 +64,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("teach_owned", "[you should know [that] | learn this one [and]] (this | that | it) is <words>"),
     Wording(
         "forget",
-        "(forget | unlearn) ([about] [the name [of] | what is] (my | our) | the name [of] [the]"
+        "(forget | unlearn | drop | delete) the name [of] [my | our | the] <words>"
+        " | (forget | unlearn) ([about] [the name [of] | what is] (my | our) | the name [of] [the]"
         " | that (it | this | that | <thing>) is (called | named) [my | our | the]) <words>"
         " | (stop | quit) (calling | naming) (it | this | that | <thing>) [my | our | the] <words>",
     ),
@@ -99,7 +104,8 @@ WORDINGS: tuple[Wording, ...] = (
         "(wait | pause | sleep | hold (on | off) | hang (on | about | around) | stay [here | there] | stand by | rest) "
         "[here | there] [for] <words>"
         " | (give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
-        " | do nothing for <words> | take a break (for | of) <words>",
+        " | (do nothing | do not (move | budge | go anywhere | drive anywhere) | freeze | (stand | stay | keep) still"
+        " | let (me | us) rest) for [the next] <words> | take a break (for | of) <words>",
     ),
     Wording("count", "count [up | down] [to | from] <words>"),
     Wording(
@@ -150,7 +156,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "tidy",
         "(sort | straighten) <spot> [out | up] | (clean | clear) <spot> off | empty <spot>"
-        " | make [some | a bit of | a little] (space | room) (on | in) <spot>"
+        " | make [some | a bit of | a little] (space | room | order) (on | in) <spot>"
         " | give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"
         " | (clean | clear | take | get | remove) (everything | all of it | it all) (off | from) <spot>",
     ),
@@ -179,6 +185,7 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     *MOVING,
     # What is said beside a command.
+    Wording("teach_owned", "(the | my | our) <thing> is <words>", kind="told"),
     Wording(
         "mention",
         "[do | can | did | have] [you] (see | know | remember | seen) <thing> [right] |"

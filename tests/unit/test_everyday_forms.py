@@ -105,6 +105,65 @@ from evaluation.everyday.understanding import understand
         # Called off in one part of what is said.
         ("busy:find my keys", "got them! you can call off the search", "stop()"),
         ("busy:bring me the apple", "cancel that! bring me the green can", "replace: fetch(green can)"),
+        # Another of the same kind, by what people call it.
+        ("last:put the red can in the recycling bin", "and its green mate an' all", "put(green can, recycling bin)"),
+        ("busy:put the red ball in the toy box", "and then the blue block, please", "queue: put(blue block, toy box)"),
+        ("-", "Of the two boxes I want the one that isn't on the desk.", "fetch(white box)"),
+        ("-", "Right you, mug. The white one.", "fetch(white mug)"),
+        ("-", "I'd like something to drink from, the mug on the desk will do.", "fetch(white mug)"),
+        ("-", "Bring us the littlest brick, duck, the blue 'un.", "fetch(blue block)"),
+        # Names and rules that are told, and taken back.
+        ("-", "We call the red ball Bouncer in this family, just so you know.", "teach(bouncer)"),
+        ("-", "The white mug? That's my lucky mug, remember that.", "teach(lucky mug)"),
+        ("-", "The blue mug is Peter's mug, please remember.", "teach(peter's mug)"),
+        ("-", "The blue mug is the dog's bed.", "none()"),
+        ("-", "This green can's name shall be Lucky, okay?", "teach(lucky)"),
+        ("-", "Nobody says vitamin box any more, so strike that name from your list.", "forget(vitamin box)"),
+        ("-", "From now on, mugs belong on the counter.", "rule(mugs, counter)"),
+        ("-", "In this house we keep the bowls on the kitchen table, please remember.", "rule(bowls, kitchen table)"),
+        ("-", "Forget what I said about where cans go.", "norule(cans)"),
+        ("-", "Scrap that thing about toys going in the toy box.", "norule(toys)"),
+        # A way with stops; where each of several things is to go; beside each other; what is said twice.
+        (
+            "-",
+            "Do the rounds: kitchen, bedroom, in that order, and then back here to me.",
+            "goto(kitchen); goto(bedroom); return()",
+        ),
+        (
+            "-",
+            "Red mug: counter. White mug: kitchen table. Off you go.",
+            "put(red mug, counter); put(white mug, kitchen table)",
+        ),
+        (
+            "-",
+            "The two bottles in the bedroom ought to be side by side, on the dresser say.",
+            "put(green bottle, dresser)",
+        ),
+        (
+            "-",
+            "I'd like the blue bottle next to the green bottle.",
+            "put(blue bottle, bedside table near green bottle)",
+        ),
+        (
+            "-",
+            "All the bottles go on the counter tonight, please move them there.",
+            "put(green bottle, counter) & put(white bottle, counter)",
+        ),
+        (
+            "last:put the white box on the bookshelf",
+            "You know, it looked better where it was.",
+            "put(white box, living table)",
+        ),
+        # What somebody would like, and what nobody can do anything for.
+        ("-", "If you went and stood next to the nightstand I'd feel a good deal safer.", "goto(bedside table)"),
+        ("-", "If only the bus would come.", "none()"),
+        # Against what was heard.
+        ("heard:tidy up the counter", "The counter? I was on about the kitchen table.", "tidy(kitchen table)"),
+        ("heard:say lunch is ready", "Not lunch, supper is ready.", "say(supper is ready)"),
+        ("heard:put the apple in the bin", "No, the apple is still good.", "no()"),
+        # A question that begins like an announcement, or with where somebody stands.
+        ("-", "Tell me, is there a single thing on that study shelf?", "answer(no)"),
+        ("-", "What sits to the right of the red can when I'm facing the counter?", "answer(blue mug)"),
     ],
 )
 def test_the_form_is_understood(context: str, said: str, right: str) -> None:

@@ -16,14 +16,14 @@ from services.brain.language.dialogue import is_reply, pieces, rejected
 
 _CONTRAST = re.compile(r"^(?P<right>(?!not\b).+?),? (?:and |but )?not (?P<wrong>.+)$")
 _GRADED = re.compile(
-    r"^(?:the )?(?:(?:right|wrong|correct) \w+|\w+(?: \w+)? (?:(?:is|was|are) )?"
+    r"^i am telling you$|^(?:the )?(?:(?:right|wrong|correct) \w+|\w+(?: \w+)? (?:(?:is|was|are) )?"
     r"(?:yes|no|(?:al)?right|correct|fine|wrong)|other way (?:a)?round)$"
 )
 """A part that says which part of what was heard is right or wrong."""
 _AROUND = re.compile(
     r"^(?:(?:it|that) (?:was|is|should (?:be|have been)|has to be) (?=(?:the|on|in)\b)|except )"
     r"| (?:it was|(?:is|was) what i \w+|would be (?:right|better|fine)|will do|is it|then|though|if you please|"
-    r"i (?:mean|think|believe)|mate|love|dear)$"
+    r"i (?:mean|think|believe|am telling you)|mate|love|dear)$"
 )
 """Words around what is meant that name nothing."""
 LONGEST_NAME = 3
@@ -40,7 +40,9 @@ def corrected(command: str, correction: str, household: Household) -> str:
     if not parts or _is_command(parts[0], household):
         return with_thing(correction, said.split()) if correction else ""
     meant, wrong = _meant(parts)
-    for part in meant:
+    if said.startswith("say ") and wrong in said and len(meant) == 1:
+        return f"say {meant[0]}" if said.endswith(meant[0].split()[-1]) else said.replace(wrong, meant[0])
+    for part in [p for p in meant if not set(p.split()) <= set(said.split())] or meant:  # "the counter? the table"
         exchanged = _exchanged(said, part, wrong, household)
         if exchanged is None:
             return correction

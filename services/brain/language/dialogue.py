@@ -17,6 +17,7 @@ _CORRECTION = re.compile(
     r"not at all|not really|no way|no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i "
     r"need|i would like|actually|"
     r"rather|almost|nearly|close|not quite|oops|whoops|ugh|sorry|wait|but|(?:pardon|excuse) me|"
+    r"i (?:asked for|was (?:on|talking|speaking) about|was after)|"
     r"i (?:believe|think)(?= i (?:said|meant)\b))[ ,;.!?]+"
 )
 
@@ -31,7 +32,9 @@ _REJECTED = re.compile(
     r"(?P<wrong>.+)$"
 )
 """A part of an answer that says only what was not meant."""
-_SAID = re.compile(r"\s+i (?:said|meant)$")
+_SAID = re.compile(r"\s+(?:(?:is|was) what )?i (?:said|meant|asked for)$")
+_OBJECTION = re.compile(r"^no,? (?:i|we|he|she|it|they|the \w+) (?:\w+ )??(?:still|already|never)\b")
+"""A no, and why nothing is to be done: `no, the apple is still good`."""
 
 
 LONGEST_ANSWER = 9
@@ -59,8 +62,10 @@ def reply(text: str, asked: str = "") -> tuple[Reply, str]:
 
 def by_wording(text: str) -> tuple[Reply, str]:
     """The same by the wordings alone."""
-    if (kind := _kind(without_fillers(expand(normalise(text))))) is not None:
+    if (kind := _kind(bare := without_fillers(expand(normalise(text))))) is not None:
         return kind, ""
+    if _OBJECTION.match(bare):
+        return "no", ""
     rest = without_lead(text)
     return "correction", without_politeness(_SAID.sub("", rest)) or rest
 

@@ -88,6 +88,10 @@ class Interjection(msgspec.Struct, frozen=True):
     text: str
 
 
+_THING_ALONE = re.compile(
+    r"^(?:the|my|our) (?!.*\b(?:is|are|can|could|should|must|has|goes|go|too|first)\b)\w+(?: \w+){0,2}$"
+)
+"""A thing for which no verb is said, so that the same is to be done with it: `then the blue block`."""
 _LEFT = re.compile(r"^(?:just |please )?leave (?:it|that|them|the|my|this)\b[^,]*$")
 """What is to stay where it is, behind a word that stops: `don't! leave the apple`."""
 
@@ -212,7 +216,8 @@ def _timed(said: str, words: str) -> Interjection | None:
         if kind == "replace" and bare != words and _is_news(bare):
             return Interjection("cancel", said)  # "never mind, I found it"
         if bare and bare != words:
-            return Interjection(kind, bare)  # type: ignore[arg-type]
+            more = kind == "queue" and _THING_ALONE.match(without_politeness(bare)) and not words.startswith("no")
+            return Interjection(kind, f"and {bare}" if more else bare)  # type: ignore[arg-type]
     return None
 
 

@@ -56,9 +56,11 @@ def teach(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def teach_owned(builder: PlanBuilder, slots: Slots) -> None:
-    """`that's grandma's cup` of what the hand holds or has just brought; of nothing else it tells a name."""
-    owned = any(word.endswith("'s") for word in slots["words"])
-    if not owned or (builder.world.held is None and builder.world.history.last is None):
+    """`that's grandma's cup` of what the hand holds or has just brought, or of a thing of that kind that is named."""
+    *owners, kind = slots["words"]
+    owned = owners and owners[-1].endswith("'s")
+    alike = kind == slots["thing"][-1] if "thing" in slots else builder.world.held or builder.world.history.last
+    if not (owned or kind.endswith("'s")) or not alike:
         raise Lost(f"{SENSELESS} what {' '.join(slots['words'])!r} has to do with it")
     teach(builder, slots)
 

@@ -26,6 +26,8 @@ from services.planner.semantic.parse import parse
 from services.planner.semantic.ranker import rank
 from services.planner.world import World
 
+LONGEST_SHORT = 4
+"""Letters of the longest word that is told by its letters alone (chosen)."""
 LONGEST_CRY = 5
 """Words of the longest exclamation that names something and asks for nothing, `a wasp!` (chosen)."""
 IDLE = 0.7
@@ -174,6 +176,10 @@ class Attempts:
         bare = [w.strip(MARKS) for w in words]
         colours, names = self._vocabulary.words()
         right, named = corrected(bare, colours | WORDS, names, REFUSED)
+        # What is short is no slip of something longer, but for a colour: the bus is not busy.
+        right = [
+            b if len(b) < len(r) <= LONGEST_SHORT and r not in colours else r for b, r in zip(bare, right, strict=True)
+        ]
         text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
         if right == bare:
             right, named = renamed(words, self._vocabulary.names(), colours, names), True

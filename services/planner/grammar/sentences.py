@@ -66,7 +66,7 @@ def _explains(words: Words, builder: PlanBuilder) -> bool:
 
 def _is_topic(words: Words, following: Sequence[str], builder: PlanBuilder, named_first: bool) -> bool:
     """Does a clause only say what the `following` one is about? It is noted; `named_first`: it is a name alone."""
-    if _tells(words, following) or (named_first and "it" in following and _VERBS.isdisjoint(words)):
+    if _tells(words, following) or (named_first and {"it", "them"} & set(following) and _VERBS.isdisjoint(words)):
         note(words, builder)  # "the red can, bin it"
         return True
     if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
