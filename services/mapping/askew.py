@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from common.geometry import Array, Mask
 
 STEP, NORMAL = math.radians(1.0), math.radians(12)
-"""Step of the directions that are tried, and turn of a point's own direction against its line's [rad]."""
+"""Step of the directions that are tried, and turn of a point's own direction against its line's [rad]; chosen: the
+noise over some 15 cm of wall."""
 BIN, BAND, TAIL = 0.01, 0.035, 0.07
 """Width of the histogram's bins, and distances [m] from a line of the points that count to it and of all its noise."""
 END, GAP, LONG, LEAST = 0.12, 0.20, 1.0, 12
@@ -30,7 +31,7 @@ def askew(points: Array, normals: Array, yaw: float) -> list[tuple[float, Mask]]
     found: list[tuple[float, Mask]] = []
     left: Mask = ~np.isnan(normals)
     angles = yaw + np.arange(-math.pi / 2, math.pi / 2, STEP)
-    lines = [_longest(points, left & _near(normals, a), a) for a in angles]
+    lines = [_longest(points, left & lies_across(normals, a), a) for a in angles]
     while True:
         # Lines only lose points: one that lost none is the longest if no other was longer.
         first = max(range(len(lines)), key=lambda n: len(lines[n][2]))
@@ -38,7 +39,7 @@ def askew(points: Array, normals: Array, yaw: float) -> list[tuple[float, Mask]]
         if len(run) < LEAST:
             break
         if not left[run].all():
-            lines[first] = _longest(points, left & _near(normals, angle), angle)
+            lines[first] = _longest(points, left & lies_across(normals, angle), angle)
             continue
         across, along = points @ _unit(angle), points @ _unit(angle + math.pi / 2)
         low, high = along[run].min() - END, along[run].max() + END
@@ -54,7 +55,7 @@ def _unit(angle: float) -> Array:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-def _near(normals: Array, angle: float) -> Mask:
+def lies_across(normals: Array, angle: float) -> Mask:
     """Which normals are those of a line whose own is `angle`, from either side."""
     return np.abs(np.mod(normals - angle + math.pi / 2, math.pi) - math.pi / 2) < NORMAL
 

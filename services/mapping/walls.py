@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 
 from common.floor_plan import Wall
 from common.geometry import Array, Rectangle, cell_means
-from services.mapping.askew import askew
+from services.mapping.askew import askew, lies_across
 
 AROUND, NEIGHBOURS, LEAST, FLAT = 0.12, 48, 6, 0.85
 """How far from a point its direction is fitted [m], to how many cells of points at most and at least [count], and how
@@ -23,8 +23,6 @@ TAIL = 0.07
 """Distance [m] from a face within which what else lies along it is its noise, or a skirting board."""
 THIN = 0.025
 """Side of the cells whose points are merged [m]: two and a half times the lidar's noise."""
-TURN = math.radians(12)
-"""Turn of a point's own direction against its wall's [rad]; chosen: the noise over some 15 cm of wall."""
 BIN, BAND = 0.01, 0.035
 """Width of the histogram's bins, and distance from a face of the points that count to it [m]: three times the noise."""
 GAP, SHORTEST, CORE = 0.40, 0.20, 0.07
@@ -69,6 +67,10 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
     if not known.any():
         return []
     main = _refined(points[known], weights[known], normals[known], main_direction(normals[known]))
+    for across in (main, main + math.pi / 2):
+        again = _normals(points, eyes, weights, across)
+        normals = np.where(np.isnan(normals) & lies_across(again, across), again, normals)
+    known = ~np.isnan(normals)
     rest, others = np.ones(len(points), bool), []
     for yaw, on in askew(points, normals, main):
         own = on & known
@@ -121,25 +123,30 @@ def _refined(points: Array, weights: Array, normals: Array, yaw: float) -> float
     return best[1]
 
 
-def _normals(points: Array, eyes: Array, weights: Array) -> Array:
+def _normals(points: Array, eyes: Array, weights: Array, across: float | None = None) -> Array:
     """Direction (n,) [rad] across what each point lies on; nan where that is no line.
 
     Weighted: of a wall that was seen for long the noise has points in many cells, and most of them in the middle ones.
-    What was seen from the opposite direction is a thin wall's other side.
+    What was seen from the opposite direction is a thin wall's other side, and so is what was seen from beyond the line
+    through a point where walls are known to lie `across` [rad]: both sides may be seen from along the wall.
     """
     near, found = KDTree(points).query(points, min(NEIGHBOURS, len(points)), distance_upper_bound=AROUND)
     there = np.isfinite(near)
     found = np.where(there, found, 0)
     views = eyes - points
-    there &= np.einsum("ni,nki->nk", views, views[found]) > 0.0
+    if across is None:
+        there &= np.einsum("ni,nki->nk", views, views[found]) > 0.0
+    else:
+        beyond = views @ (math.cos(across), math.sin(across)) > 0.0
+        there &= beyond[:, None] == beyond[found]
     weight = np.where(there, weights[found], 0.0)
     weight /= weight.sum(axis=1, keepdims=True)
     away = points[found]
     away = away - np.einsum("nk,nki->ni", weight, away)[:, None]
     values, vectors = np.linalg.eigh(np.einsum("nk,nki,nkj->nij", weight, away, away))
-    across = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
-    across[(values[:, 0] > (1.0 - FLAT) * values[:, 1]) | (there.sum(axis=1) < LEAST)] = np.nan
-    return np.asarray(across)
+    normals = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
+    normals[(values[:, 0] > (1.0 - FLAT) * values[:, 1]) | (there.sum(axis=1) < LEAST)] = np.nan
+    return np.asarray(normals)
 
 
 def _faces(points: Array, eyes: Array, normals: Array) -> list[Face]:
@@ -147,8 +154,7 @@ def _faces(points: Array, eyes: Array, normals: Array) -> list[Face]:
     found: list[Face] = []
     for axis in (0, 1):
         across = 1 - axis
-        angle = normals - across * math.pi / 2
-        mine = np.abs(np.mod(angle + math.pi / 2, math.pi) - math.pi / 2) < TURN
+        mine = lies_across(normals, across * math.pi / 2)
         side = np.where(eyes[:, across] > points[:, across], 1, -1)
         for sign in (1, -1):
             on = mine & (side == sign)

@@ -207,6 +207,20 @@ def test_what_is_left_of_a_wall_beside_an_opening_is_one_up_to_its_corner() -> N
     assert low < 0.06 and high == pytest.approx(0.22, abs=0.05)
 
 
+def test_a_thin_wall_whose_sides_are_both_seen_from_along_it_is_one() -> None:
+    """The end of a corridor's wall beside a door, which the rest of the corridor and a room show at grazing angles."""
+    rng = np.random.default_rng(7)
+    long, piece = np.tile(np.arange(0.0, 5.0, 0.05), 12), np.tile(np.arange(6.0, 7.0, 0.02), 20)
+    faces = [(long, 0.06, (2.5, 1.0)), (long, -0.06, (2.5, -1.5)), (long, 1.5, (2.5, 1.0)),
+             (piece, 0.06, (-2.0, 0.8)), (piece, -0.06, (3.0, -1.7))]  # fmt: skip
+    points = np.concatenate([np.column_stack([x, np.full(len(x), y)]) for x, y, _ in faces])
+    eyes = np.concatenate([np.tile(eye, (len(x), 1)) for x, _, eye in faces])
+    walls = find_walls(points + rng.normal(0.0, 0.015, points.shape), eyes, [])
+    (wall,) = (w for w in walls if w.start[0] > 5.5)
+    assert wall.thickness == pytest.approx(0.12, abs=0.02)
+    assert sorted((wall.start[0], wall.end[0])) == pytest.approx([6.06, 6.86], abs=0.1)
+
+
 def test_the_rim_of_a_bin_is_no_shelf() -> None:
     rim = Surface(Rectangle(0.51, -0.27, 0.38, 0.37), 0.41, np.empty((0, 2)))
     hole = Rectangle(0.51, -0.27, 0.34, 0.34)
