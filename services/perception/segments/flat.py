@@ -77,11 +77,12 @@ def _of_another_colour(rgb: NDArray[np.float32], level: Mask) -> tuple[Mask, Mas
     around = [ndimage.uniform_filter(plane * level, AROUND) / weight for plane in planes]
     own, usual = np.maximum(sum(planes), 1.0), np.maximum(sum(around), 1.0)
     off = sum(np.abs(a / own - b / usual) for a, b in zip(planes, around, strict=True))
-    alone = np.maximum(rgb.sum(axis=-1), 1.0)
+    alone = np.maximum(sum(rgb[..., i] for i in range(3)), 1.0)
     # A pixel beside the patch has some of its colour in the mean only.
     raw = sum(np.abs(rgb[..., i] / alone - b / usual) for i, b in enumerate(around))
     # What is dark has its own way to be seen: by its outline.
-    bright, tinted = np.max(planes, axis=0) > DARK, np.minimum(off, raw) > OTHER
+    brightest = np.maximum(np.maximum(planes[0], planes[1]), planes[2])
+    bright, tinted = brightest > DARK, np.minimum(off, raw) > OTHER
     return bright & ((off > OTHER) | (np.abs(own - usual) > DARKER * usual)), bright & tinted
 
 
