@@ -45,3 +45,12 @@ def test_neither_a_neck_nor_something_thin_is_a_handle() -> None:
     for mask in (bottle, pen):
         assert not parts_of(mask).handle.any()
     assert parts_of(pen).of_body(*np.nonzero(pen)).all()
+
+
+def test_the_stem_and_the_foot_of_a_glass_are_of_it() -> None:
+    glass = np.zeros((110, 60), bool)
+    glass[10:50, 10:45] = True
+    glass[50:95, 26:30] = True
+    glass[95:98, 12:43] = True
+    parts = parts_of(glass)
+    assert parts.of_body(*np.nonzero(glass)).all() and not parts.handle.any()

@@ -211,3 +211,12 @@ def test_nothing_that_is_turned_is_wider_than_its_outline() -> None:
     outline = primitives.silhouette(drill, eye, (True, True), 0.0008)
     found = turned.standing(drill, 0.19, outline, eye, NOISE, np.zeros(len(drill), bool))
     assert found.size[0] < 0.25 or found.residual > 0.03
+
+
+def test_what_shows_too_little_of_itself_is_not_taken_for_a_wide_wall() -> None:
+    rng, eye = np.random.default_rng(3), np.array([0.0, -1.2, 0.5])
+    wall = rng.uniform((-0.05, -0.002, 0.0), (0.05, 0.002, 0.055), (200, 3))
+    wall[:, 1] += wall[:, 0] ** 2
+    outline = primitives.silhouette(wall, eye, (False, False), 0.0008)
+    found = turned.standing(wall, 0.055, outline, eye, NOISE, np.zeros(len(wall), bool))
+    assert found.size[0] < 0.25 or found.residual > 0.03

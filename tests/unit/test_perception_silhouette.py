@@ -152,6 +152,27 @@ def test_a_handle_is_beside_the_body_and_no_part_of_it() -> None:
     assert shape.handle == pytest.approx(math.pi / 2, abs=0.4)
 
 
+def test_a_glass_on_a_stem_stands_where_its_foot_is() -> None:
+    cup, stem, foot = cylinder(0.038, 0.17), cylinder(0.006, 0.17), cylinder(0.034, 0.006)
+    (shape,) = found(seen(lambda p: cup(p) & (p[..., 2] > FLOOR + 0.09) | stem(p) | foot(p)))
+    assert (shape.x, shape.y) == pytest.approx(AT, abs=0.012)
+    assert shape.size == pytest.approx((0.076, 0.076, 0.17), abs=0.012)
+
+
+@pytest.mark.parametrize("wide", [0.4, 1.1], ids=["a part of its foot", "its whole foot"])
+def test_what_hides_a_part_of_an_outline_leaves_the_rest_of_it(wide: float) -> None:
+    view = seen(cylinder(0.036, 0.12))
+    rows, columns = np.nonzero(view.depth == 0)
+    top, left = int(np.quantile(rows, 0.8)), int(columns.max() - wide * np.ptp(columns))
+    depth, rgb = view.depth.copy(), view.rgb.copy()
+    depth[top:, left:], rgb[top:, left:] = 0.6, 150
+    shapes = found(replace(view, depth=depth, rgb=rgb))
+    assert len(shapes) == (wide < 1.0)
+    for shape in shapes:
+        assert (shape.x, shape.y) == pytest.approx(AT, abs=0.012)
+        assert shape.size == pytest.approx((0.072, 0.072, 0.12), abs=0.012)
+
+
 def test_what_is_no_whole_object_on_the_surface_is_left_alone() -> None:
     assert not found(seen(cylinder(0.036, 0.12), beside=True)), "half of it is hidden"
     assert not found(seen(cylinder(0.036, 0.12)), level=FLOOR + 0.05), "it stands on something lower"

@@ -21,9 +21,11 @@ BELOW = 3
 LEVEL = 0.012
 """Distance [m] from the surface, beside noise, within which that is the surface."""
 STANDS = 0.7
-"""Share of the lower edge below which the surface is seen, from which an object stands on it."""
-HIDDEN = 0.08
-"""Share of the band around an outline in which something nearer is seen, from which it is no outline."""
+"""Share of the lower edge below which the surface is seen, of what no thing before it hides, from which an object
+stands on it."""
+HIDDEN, MOST_HIDDEN, FOOT = 0.08, 0.4, 0.2
+"""Shares of the band around an outline in which something nearer is seen, from which it hides a part of it, and from
+which it is no outline; least share of its lower edge below which the surface is seen."""
 OWN, OWN_SHARE = 0.015, 0.6
 """How far [m] around the shape what was measured is of the object itself, and the share of a part that has to be."""
 
@@ -42,35 +44,45 @@ def on_surface(
     high = np.array([over.x.max(), over.y.max()]) + OWN
     found = []
     for number, pixels in dark.unseen():
-        at = silhouette.foot(view, pixels, float(plane[2]))
+        edge = _edge(view, pixels, plane)
+        at = silhouette.foot(view, edge, float(plane[2]))
         if at is None or not ((low < at[:2]) & (at[:2] < high)).all():
             continue
         floor = float(plane @ (at[0], at[1], 1.0))
-        at = silhouette.foot(view, pixels, floor)
+        at = silhouette.foot(view, edge, floor)
         if at is None or any(box.contains(float(at[0]), float(at[1])) for box in taken):
             continue
-        if not _is_object(view, pixels, at, plane, own):
+        hidden = _hidden(view, pixels, at, plane, own)
+        if hidden is None:
             continue
         inside = np.isin(over.pixels, pixels[0] * view.shape[1] + pixels[1])
         points = np.stack([over.x[inside], over.y[inside], over.z[inside]], axis=1).astype(np.float64)
         points = points[points[:, 2] > floor + LEVEL]
-        shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor, points)
+        shape = silhouette.shape(view, silhouette.outline(view, pixels, at, hidden), at, floor, points)
         if shape is None or max(shape.size[:2]) > WIDEST or shape.size[2] > HIGHEST:
             continue
         dark.taken.add(number)
         found.append(
-            Segment(Surface(name, floor), *pixels, points[is_of(points, shape)], False, (True, True), shape=shape)
+            Segment(
+                Surface(name, floor),
+                *pixels,
+                points[is_of(points, shape)],
+                bool(hidden.any()),
+                (True, True),
+                shape=shape,
+            )
         )
     return found
 
 
-def _is_object(view: View, pixels: Pixels, at: Array, plane: Array, own: Mask) -> bool:
-    """An outline stands on the surface, is no larger than objects are, and nothing covers a part of it."""
+def _hidden(view: View, pixels: Pixels, at: Array, plane: Array, own: Mask) -> NDArray[np.bool_] | None:
+    """At which of its pixels (n,) something nearer hides the rest of an outline that stands on the surface `at` (3,);
+    None if it does not, is larger than objects are, or is hidden for the most part."""
     rows, columns = pixels
     distance = float((at - view.position) @ view.rotation[:, 2])
     pixel = distance / view.focal[0]
     if max(np.ptp(rows) * pixel / HIGHEST, np.ptp(columns) * pixel / WIDEST) > 1.0:
-        return False
+        return None
     top, left = int(rows.min()) - RIM, int(columns.min()) - RIM
     window = slice(max(0, top), int(rows.max()) + RIM + 1), slice(max(0, left), int(columns.max()) + RIM + 1)
     mask = np.zeros(view.depth[window].shape, bool)
@@ -80,9 +92,14 @@ def _is_object(view: View, pixels: Pixels, at: Array, plane: Array, own: Mask) -
     nearer = band & (own[window] | ((depth > 0) & (depth < distance - NEARER)))
     # What is nearer below is the surface itself.
     nearer &= own[window] | (_above(view, window, plane) > LEVEL)
-    if np.count_nonzero(nearer) > HIDDEN * np.count_nonzero(band):
-        return False
-    return _stands(view, rows, columns, plane)
+    share = float(np.mean(nearer[band])) if band.any() else 0.0
+    if share > MOST_HIDDEN:
+        return None
+    hidden = ndimage.binary_dilation(nearer, np.ones((3, 3)), iterations=RIM)
+    found = np.asarray(hidden[rows - window[0].start, columns - window[1].start])
+    if not _stands(view, pixels, plane, found):
+        return None
+    return found if share > HIDDEN else np.zeros_like(found)
 
 
 def _above(view: View, window: tuple[slice, slice], plane: Array) -> NDArray[np.float64]:
@@ -90,19 +107,33 @@ def _above(view: View, window: tuple[slice, slice], plane: Array) -> NDArray[np.
     return np.asarray(z - (plane[0] * x + plane[1] * y + plane[2]), np.float64)
 
 
-def _stands(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], plane: Array) -> bool:
-    """Below its lower edge the surface is seen, wherever there is depth."""
+def _lower_edge(view: View, pixels: Pixels, plane: Array) -> tuple[Pixels, Mask, Mask]:
+    """The lowest pixel of each column of an outline, which (n,) of them have depth below, and which the surface."""
+    rows, columns = pixels
     lowest = np.full(int(columns.max()) + 1, -1)
     np.maximum.at(lowest, columns, rows)
     across = np.flatnonzero(lowest >= 0)
     below = np.minimum(lowest[across] + BELOW, view.shape[0] - 1)
-    depth = view.depth[below, across]
-    seen = depth > 0
-    if np.count_nonzero(seen) < len(across) / 3:
+    x, y, z = view.points[below, across].T
+    seen = view.depth[below, across] > 0
+    return (lowest[across], across), seen, seen & (np.abs(z - (plane[0] * x + plane[1] * y + plane[2])) < LEVEL)
+
+
+def _edge(view: View, pixels: Pixels, plane: Array) -> Pixels:
+    """The pixels of the lower edge of an outline below which the surface is seen; all of it if there are none."""
+    (rows, columns), _, on = _lower_edge(view, pixels, plane)
+    return (rows[on], columns[on]) if on.any() else (rows, columns)
+
+
+def _stands(view: View, pixels: Pixels, plane: Array, hidden: NDArray[np.bool_]) -> bool:
+    """Below its lower edge the surface is seen, wherever there is depth and its pixels (n,) are not `hidden`."""
+    (rows, columns), seen, on = _lower_edge(view, pixels, plane)
+    covered = np.zeros(view.shape, bool)
+    covered[pixels] = hidden
+    free = ~covered[rows, columns]
+    if np.count_nonzero(seen) < len(rows) / 3 or np.mean(on) < FOOT:
         return False
-    x, y, z = view.points[below[seen], across[seen]].T
-    on = np.abs(z - (plane[0] * x + plane[1] * y + plane[2])) < LEVEL
-    return bool(np.mean(on) > STANDS)
+    return bool(np.mean(on[seen & (free | on)]) > STANDS)
 
 
 def is_of(points: Array, shape: Measurement) -> NDArray[np.bool_]:

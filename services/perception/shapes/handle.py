@@ -45,7 +45,21 @@ def parted(rows: NDArray[np.intp], columns: NDArray[np.intp], pixel: float) -> P
     labels, count = ndimage.label(body)
     if count > 1:
         body = labels == 1 + int(np.bincount(labels[body])[1:].argmax())
+    body |= _stands_on(mask, body)
     return Parts(body, _handle(mask, body), row, column)
+
+
+def _stands_on(mask: NDArray[np.bool_], body: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The parts below the body: the stem and the foot of a glass, without which it would stand farther away."""
+    labels, _ = ndimage.label(mask & ~body, np.ones((3, 3)))
+    lowest = np.flatnonzero(body.any(axis=1))[-1]
+    across = np.flatnonzero(body.any(axis=0))
+    found = np.zeros_like(mask)
+    for n, box in enumerate(ndimage.find_objects(labels), start=1):
+        middle = (box[1].start + box[1].stop - 1) / 2
+        if box[0].stop - 1 > lowest and across[0] <= middle <= across[-1]:
+            found |= labels == n
+    return found
 
 
 def _handle(mask: NDArray[np.bool_], body: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -38,6 +38,13 @@ PIXELS_OFF, MOST_OFF = 0.7, 0.0025
 """Mean distance of the outlines, in pixels and in metres [m] beside, up to which a shape explains the outline."""
 SOLID = 0.78
 """Least share of its convex hull that a shape's outline covers: bottles with their necks .8, all others .95."""
+UPRIGHT = 1.0
+"""Standard deviation [pixels] of the middles of its rows from a line up to which an outline is that of something
+turned, as narrow as it may be between its ends."""
+SHOWN = 1.5
+"""How far [pixels] from where it ends in a direction an outline must not be hidden to be known there."""
+LEAST_SHOWN = 0.5
+"""Share of the directions in which an outline has to be known."""
 FLARED = 1.3
 """Radius above by that below from which a vessel is a bowl; what is turned and closed above is hardly ever."""
 SIMPLER = 0.06
@@ -54,7 +61,8 @@ class Outline:
     there; `handle`: the middle (2,) [rad] in the picture of what is thin beside the body, None without.
 
     `top`: the body's first row, `widths` (n,) [m]: how wide each is from there on; `solid`: share of its convex hull
-    that the body covers.
+    that the body covers; `turned`: it is alike to both sides of an upright axis; `shown` (DIRECTIONS,): whether nothing
+    hides how far it reaches.
     """
 
     reach: Array
@@ -64,6 +72,8 @@ class Outline:
     top: int
     widths: Array
     solid: float
+    turned: bool
+    shown: NDArray[np.bool_]
 
 
 def foot(view: View, pixels: Pixels, floor: float) -> Array | None:
@@ -80,21 +90,36 @@ def _ray(view: View, column: float, row: float) -> Array:
     return np.asarray(view.rotation @ np.append(_rays(view, np.array([row]), np.array([column])), 1.0))
 
 
-def outline(view: View, pixels: Pixels, at: Array) -> Outline:
-    """The outline of an object's body; `at` (3,) [map] is about where it stands."""
+def outline(view: View, pixels: Pixels, at: Array, hidden: NDArray[np.bool_] | None = None) -> Outline:
+    """The outline of an object's body; `at` (3,) [map] is about where it stands. `hidden` (n,): at which of its pixels
+    something nearer begins."""
     distance = float((at - view.position) @ view.rotation[:, 2])
     pixel = distance / view.focal[0]
     rows, columns = pixels
     parts = parted(rows, columns, pixel)
     own = parts.of_body(rows, columns)
-    reach = (_rays(view, rows[own], columns[own]) @ TURNS).max(axis=0) + BEYOND / view.focal[0]
+    reaches = _rays(view, rows[own], columns[own]) @ TURNS
+    reach = reaches.max(axis=0)
+    shown = np.ones(DIRECTIONS, bool)
+    if hidden is not None and hidden[own].any():
+        shown = reaches[hidden[own]].max(axis=0) < reach - SHOWN / view.focal[0]
     of_handle = parts.of_handle(rows, columns)
     handle = _rays(view, rows[of_handle], columns[of_handle]).mean(axis=0) if of_handle.any() else None
     filled = np.flatnonzero(parts.body.any(axis=1))
     widths = np.count_nonzero(parts.body, axis=1)[filled[0] : filled[-1] + 1] * pixel
     squares = (np.argwhere(parts.body)[:, None] + [(0, 0), (0, 1), (1, 0), (1, 1)]).reshape(-1, 2)
     solid = float(np.count_nonzero(parts.body) / ConvexHull(squares).volume)
-    return Outline(reach, distance, pixel, handle, parts.row + int(filled[0]), widths, solid)
+    body = parts.body[filled[0] : filled[-1] + 1]
+    first, last = body.argmax(axis=1), body.shape[1] - 1 - body[:, ::-1].argmax(axis=1)
+    turned = bool(body.sum() == (last - first + 1).sum() and _off_line(first + last) < 2 * UPRIGHT)
+    row = parts.row + int(filled[0])
+    return Outline(reach + BEYOND / view.focal[0], distance, pixel, handle, row, widths, solid, turned, shown)
+
+
+def _off_line(values: Array) -> float:
+    """Standard deviation of values (n,) from the line that fits them best."""
+    at = np.arange(len(values))
+    return float(np.std(values - np.polyval(np.polyfit(at, values, 1), at))) if len(values) > 1 else 0.0
 
 
 def _rays(view: View, rows: NDArray[Any], columns: NDArray[Any]) -> Array:
@@ -109,6 +134,8 @@ def shape(view: View, seen: Outline, at: Array, floor: float, points: Array) -> 
     `at` (3,) [map]: the nearest point of its foot.
     """
     half = seen.distance * float(seen.reach[0] + seen.reach[DIRECTIONS // 2]) / 2
+    if np.mean(seen.shown) < LEAST_SHOWN:
+        return None
     away = at[:2] - view.position[:2]
     away = away / max(1e-6, float(np.linalg.norm(away)))
     # The uppermost ray reaches the far side of the top.
@@ -123,22 +150,24 @@ def shape(view: View, seen: Outline, at: Array, floor: float, points: Array) -> 
         tried.append(_fit(view, seen, solids.ball(floor), np.array([*(at[:2] + away * 0.4 * half), half]), "ball"))
     used = points[:: max(1, len(points) // SAMPLE)] - (0.0, 0.0, floor)
     # What is lit from above shows how high it is; an outline alone is also that of a lower and deeper box.
-    known = [primitives.quantile(used[:, 2], 0.9)] if len(used) > FEW else []
-    for height, (yaw, slim) in product(
-        [math.nan, *known], ((0.0, 1.0), (0.5, 1.0), (1.0, 1.0), (0.5, 2.5), (-0.5, 2.5))
-    ):
+    heights = [math.nan, *([primitives.quantile(used[:, 2], 0.9)] if len(used) > FEW else [])]
+    if not seen.shown.all():
+        # How deep it is nobody knows: as deep as it is wide.
+        heights = []
+    for height, (yaw, slim) in product(heights, ((0.0, 1.0), (0.5, 1.0), (1.0, 1.0), (0.5, 2.5), (-0.5, 2.5))):
         # As wide across the line of sight as it is seen.
         c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
         side = 2 * half / (slim * s + c)
         middle = at[:2] + away * side * (s + slim * c) / 2
         start = np.array([*middle, ahead + yaw, slim * side, side, h if math.isnan(height) else height])
         tried.append(_fit(view, seen, solids.box(floor), start, "box", height))
-    if half > 0.6 * h:
+    if half > 0.6 * h and heights:
         for turn in (math.pi / 2, math.pi / 4, -math.pi / 4):
             start = np.array([*(at[:2] + away * h / 2), ahead + turn, h / 2, 2 * half / abs(math.sin(turn))])
             tried.append(_fit(view, seen, solids.lying(floor), start, "long"))
     best = min(tried, key=lambda m: m.residual + SIMPLER * m.free * 0.5 * seen.pixel + _beyond(m, used))
-    if best.residual > PIXELS_OFF * seen.pixel + MOST_OFF or seen.solid < SOLID:
+    stems = seen.turned and best.family in ("round", "bowl") and not best.tilt
+    if best.residual > PIXELS_OFF * seen.pixel + MOST_OFF or (seen.solid < SOLID and not stems):
         return None
     if best.family == "round" and not best.tilt:
         best = replace(best, profile=_profile(view, seen, best, floor))
@@ -203,7 +232,7 @@ def _fit(
     shifts = np.concatenate([np.zeros((1, count)), STEP * np.eye(count)])
 
     def off(p: Array) -> tuple[Array, Array]:
-        apart = np.stack([seen.distance * (_reach(view, corners(q)) - seen.reach) for q in p + shifts])
+        apart = np.stack([seen.distance * (_reach(view, corners(q)) - seen.reach)[seen.shown] for q in p + shifts])
         if not math.isnan(height):
             apart = np.hstack([apart, KNOWN * ((p + shifts)[:, -1:] - height)])
         return apart[0], ((apart[1:] - apart[0]) / STEP).T
@@ -213,7 +242,9 @@ def _fit(
     noise = max(FREE, 0.4 * seen.pixel)
     information = slopes.T @ slopes / (noise * noise) + np.eye(count) * 25.0
     covariance = np.diag(np.linalg.inv(information))
-    return _measurement(p, covariance, float(np.minimum(np.abs(apart[:DIRECTIONS]), 0.02).mean()), family)
+    return _measurement(
+        p, covariance, float(np.minimum(np.abs(apart[: np.count_nonzero(seen.shown)]), 0.02).mean()), family
+    )
 
 
 def _measurement(p: Array, variance: Array, residual: float, family: ShapeFamily) -> Measurement:

@@ -36,6 +36,8 @@ VESSEL = (0.05, 0.17)
 WIDER, WIDTH_COST = 1.15, 0.3
 """Width of a turned shape by that of its outline up to which it may be one, and the share of what it is wider that
 counts as off. Chosen: the error of an outline at 2 m; as a ball's height counts."""
+HALF_HIDDEN = 2.0
+"""The same, by what is seen of it, where an end is hidden: what shows less of itself tells no width."""
 
 
 def spread(solution: Solution, entries: slice) -> float:
@@ -114,7 +116,10 @@ def standing(
         handle = math.atan2(*(points[beyond, :2].mean(axis=0) - (x, y))[::-1])
         off = np.where(beyond, np.minimum(off, noise), off)
     # Of what is turned the outline shows the whole width; nan where an end is hidden.
-    beyond_it = 2 * widest - WIDER * outline.distance * float(np.ptp(outline.ends)) - noise
+    shown = WIDER * outline.distance * float(np.ptp(outline.ends))
+    if math.isnan(shown):
+        shown = HALF_HIDDEN * max(h, float(np.ptp(points[:, :2], axis=0).max()))
+    beyond_it = 2 * widest - shown - noise
     too_wide = WIDTH_COST * beyond_it if beyond_it > 0.0 else 0.0
     flared = grows > 0.25 or radii[-1] > 1.25 * radii[1]
     # Past a neck one looks as well.
