@@ -3,8 +3,8 @@
 import re
 
 from common.kinds import KINDS
-from common.language.exchange import COLOURS, PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING, HANDLING
+from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
+from common.language.lexicon import A_COLOUR, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.noun_phrase import WHICH
 from common.language.politeness import without_politeness
@@ -26,22 +26,21 @@ _ANY_ONE = re.compile(
 )
 
 
-_COLOUR = rf"(?:{'|'.join(sorted(COLOURS))})"
 _GOES = r"(?= (?:to|on|onto|in|into|goes|go|for|back)\b)"
 _SHARED = re.compile(
     r"\b(?:the|both|two|all|my|our|those|these)(?: (?:two|three|both))? (?P<noun>[a-z]+)s(?:,? please)?[,.;] "
-    rf"(?P<rest>(?:the )?{_COLOUR}(?: one)?{_GOES}.+)$"
+    rf"(?P<rest>(?:the )?{A_COLOUR}(?: one)?{_GOES}.+)$"
 )
-_SHARING = re.compile(rf"\b(?:the )?({_COLOUR})(?: one)?{_GOES}")
+_SHARING = re.compile(rf"\b(?:the )?({A_COLOUR})(?: one)?{_GOES}")
 """Several of a kind, and where each of them is to go by its colour alone."""
 _SECOND = re.compile(
-    rf"\b(?P<first>the {_COLOUR} (?P<noun>[a-z]+)),? (?P<and>and|or) (?:the )?(?P<other>{_COLOUR})(?: one)?"
+    rf"\b(?P<first>the {A_COLOUR} (?P<noun>[a-z]+)),? (?P<and>and|or) (?:the )?(?P<other>{A_COLOUR})(?: one)?"
     r"(?=$|[,.;!?]| (?:to|on|onto|in|into|too|please|as)\b)"
 )
 """Two of a kind by their colours, the second without its noun."""
 _LABELLED = re.compile(
     r"^(?:(?:to|into|onto|in|on|for) )?(?:(?:the|my|our) )?(?P<place>\w+(?: \w+){0,2})\s*:\s+"
-    rf"(?P<things>(?:(?:the|my|our|an?|all|both|two|every|{_COLOUR}) [^.;:!?]+|"
+    rf"(?P<things>(?:(?:the|my|our|an?|all|both|two|every|{A_COLOUR}) [^.;:!?]+|"
     r"\w+(?= and |[.;!?]|$)[^.;:!?]*))(?P<rest>.*)$",
     re.IGNORECASE,
 )

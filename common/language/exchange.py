@@ -3,14 +3,10 @@
 import re
 from collections.abc import Callable, Iterable
 
-from common.kinds import KINDS
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import COLOURS, COMMANDING
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.politeness import without_politeness
-from common.naming.names import ALIKE
 
-COLOURS = ALIKE.keys() - KINDS.keys()
-"""Words for colours that are no things as well."""
 PREPOSITIONS = frozenset({
     "on", "in", "to", "into", "onto", "at", "from", "next", "near", "beside", "under", "behind", "with", "inside",
     "off",

@@ -1,5 +1,8 @@
 """Words that ask for the same, as options of a pattern: a synonym is one more word here and stands in every wording."""
 
+from common.kinds import KINDS
+from common.naming.names import ALIKE
+
 BRING = (
     "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve | chuck | toss | throw | slide | lend"
     " | deliver"
@@ -91,6 +94,9 @@ TO_GO = rf"(?:go|{'|'.join(GO.split(' | '))})"
 """Regular expression for a verb of going."""
 A_WISH = r"(?:i|we) (?:really |would |do )*(?:want|need|like|fancy)"
 """How somebody says that they want something."""
+COLOURS = ALIKE.keys() - KINDS.keys()
+"""Words for colours that are no things as well."""
+A_COLOUR = rf"(?:{'|'.join(sorted(COLOURS))})"
 HANDLING: frozenset[str] = frozenset(
     option.split()[0]
     for verbs in (BRING, FETCH, PUT, MOVE, THROW, DISCARD, TIDY, "pick")

@@ -83,7 +83,7 @@ CURSES = frozenset(_CURSES.split())
 UNSEEN = CURSES.union(_UNSEEN.split())
 """Qualities that nobody can see or that tell nothing apart."""
 _MEASURES = frozenset(
-    {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind", "either"}
+    {"piece", "pieces", "bit", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind", "either"}
 )
 """Words before "of" that say how much of it."""
 _TAILS = (

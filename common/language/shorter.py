@@ -3,17 +3,15 @@
 import re
 
 from common.kinds import KINDS
-from common.language.lexicon import A_VERB, PAIRED, TO_GO
-from common.naming.colours import COLOURS
+from common.language.lexicon import A_COLOUR, A_VERB, PAIRED, TO_GO
 
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
 _PREPOSITION = (
     r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
     r"(?:left|right))\b)"
 )
-_LOOKS = rf"(?:{'|'.join(sorted(COLOURS))}|small|big|little|large|tall|other)\b"
+_LOOKS = rf"(?:{A_COLOUR}|small|big|little|large|tall|other)\b"
 """A word of colour or size: the name of a thing that begins with one may have its noun from a thing before."""
-_COLOUR = rf"(?:{'|'.join(sorted(COLOURS))})"
 _KIN = "(?:brother|sister|mate|cousin|twin|friend|pal|buddy|partner|companion|counterpart|sibling|neighbour)"
 """What somebody calls another thing of the same kind: `its green mate`."""
 _APART = r"(?:side by side|next to (?:each other|one another)|beside each other|in a row|together)"
@@ -35,7 +33,7 @@ SHORTER = tuple(
         (r"\b(?:a few|several) (?!times\b|\w+ ago\b)(?=[a-z]+s\b)(?!seconds\b|minutes\b|hours\b|moments\b)", "some "),
         (r"(?<=\w),(?= from (?:now|today) on\b)", ""), (r"\b(from (?:now|today) on), (?=\w)", r"\1 "),
         (r"^from (?:now|today) on (?:(?:i|we|you)(?: will| shall| can)? )?(?=(?:call|name)\b)", ""),
-        (rf"\b(?:its|their|the|my|his|her) ({_COLOUR}) {_KIN}\b", r"the \1 one"),
+        (rf"\b(?:its|their|the|my|his|her) ({A_COLOUR}) {_KIN}\b", r"the \1 one"),
         (r"\b(?:just|right) now\b", "now"),
         (r"\bwhat (?:stands|lies|sits) (?=(?:between|next to|near|beside|to the)\b)", "what is "),
         (r"\b(how many \w+) (?:stand|lie|sit) (?=(?:on|in|at)\b)", r"\1 are "),

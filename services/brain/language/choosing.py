@@ -31,10 +31,8 @@ _SIZES: dict[str, Which] = {
     "small": "smallest", "little": "smallest", "tiny": "smallest",
 }  # fmt: skip
 _OF_SIZE = "|".join(word for word, which in WHICH.items() if which in _SIZES.values())
-_SIZED = re.compile(rf"\b({_OF_SIZE})(?:'un| one)?(?: please)?(?:$|,)")
+_SIZED = re.compile(rf"\b({_OF_SIZE})(?: one)?(?: please)?(?:$|,)")
 """A size that tells of no other noun: `the one that is so tiny`, `the big one, i think`."""
-_THAT_ONE = re.compile(r"(?<=\w)'uns?\b")
-"""The end of `the green'un`."""
 _PEOPLE = frozenset({"fellow", "fella", "guy", "chap", "lad", "beauty", "boy", "thing", "bloke"})
 """Words for anything at all."""
 _LAST = frozenset({"last", "latter", "later"})
@@ -72,10 +70,10 @@ def chosen(
         return None  # more than one, or a question of one's own
     if (found := _singled_out(answer, options, known, household)) or household is None:
         return found
-    meant = _SAID_BEFORE.sub("", normalise(answer, ","))
+    meant = expand(_SAID_BEFORE.sub("", normalise(answer, ",")))
     words = words_of(meant)
     # What somebody does not want says less than what they do: "i will not eat it, i will throw it".
-    wanted = ",".join(part for part in meant.split(",") if "not" not in expand(part).split())
+    wanted = ",".join(part for part in meant.split(",") if "not" not in part.split())
     likely, p = likeliest(wanted or meant, options, known, household)
     named = any(not set(option.split()).isdisjoint(words) for option in options)
     if not named and UNFIT.isdisjoint(words) and len(sizes := set(_SIZED.findall(wanted))) == 1:
@@ -96,8 +94,8 @@ def _singled_out(
     answer: str, options: Sequence[str], known: Sequence[WorldObject], household: Household | None
 ) -> str | None:
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
-    plain = _THAT_ONE.sub("", without_politeness(normalise(without_lead(answer))))
-    bare = " ".join(simplified(tuple(_NAMED_BEFORE.sub("", plain).split())))
+    plain = _NAMED_BEFORE.sub("", without_politeness(normalise(without_lead(answer))))
+    bare = " ".join(simplified(tuple(plain.split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     if (number := _number(words, len(options))) is not None:
         return options[number]
