@@ -75,6 +75,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP}(?: and that)? is where you (?:should be|are needed|are wanted|belong)", r"go to \1"),
         (rf"{NP}(?: and that)? is where {NP} (?:(?:should|must|needs to|ought to|has to|is to|can) "
          rf"(?:go|stand|be|end up|live|sit)|goes)", r"put \2 on \1"),
+        (rf"(?:right )?{_BESIDE.replace('(?:', '(', 1)} {NP} is where (?:i|we) {_WANT} {NP}", r"put \3 \1 \2"),
         (rf"{NP}(?: and that)? is where (?:i|we) {_WANT} {NP}", r"put \2 on \1"),
         (rf"(?:make sure|see to it|see|ensure)(?: that)? there is {NP} ({TO_PLACE}) {NP}", r"put \1 \2 \3"),
         # For somebody else than the speaker: there is one place to bring things to.

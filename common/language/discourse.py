@@ -40,6 +40,7 @@ _RETRACTED = re.compile(
 )
 """A command that is taken back in the same breath."""
 _ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
+_AND_YOU_CAN = re.compile(rf",? (?:then )?you (?:can|could|may|should) (?={A_VERB}\b)")
 _BUT_FIRST = re.compile(
     r"^(?P<second>.+?),? but (?:first|before (?:that|you do(?: (?:that|it|so))?|doing (?:that|it|so))|beforehand),? "
     r"(?P<first>.+)$"
@@ -162,8 +163,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
 def _in_order(text: str) -> list[str]:
     """The text cut at "before you" and "after you have", the earlier part first."""
     bare = without_politeness(text)
-    if found := _FIRST.match(bare):
-        cut = _second_clause(found["rest"])
+    if found := _FIRST.match(bare) or _FIRST.match(text):
+        cut = _second_clause(_AND_YOU_CAN.sub(", ", found["rest"]))
         if cut is not None:
             one, other = cut
             if _ALWAYS.search(text):  # "when you tidy up put the balls in the toy box from now on"

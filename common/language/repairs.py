@@ -20,6 +20,8 @@ _REPAIR = re.compile(
     r"no|scratch that)?\b[,.]?\s*"
 )
 """Between what was said and what was meant."""
+_TELLS = re.compile(r"(?:it|they|he|she) (?:is|are|was|were) (?:on|in|at)\b")
+"""What tells where something is, and stands for no part of what was said."""
 _TAKEN_BACK = re.compile(
     r"(?:[.;!?]\s*)+(?:no,? )?(?:(?:scratch|strike|scrap) that|(?:my )?final answer)(?:\s*[.;:!,])+\s*(?=\w)"
 )
@@ -194,6 +196,8 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         found = (None, *_REPAIR.finditer(text))[-1]
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
+        if _TELLS.match(text, found.end()):
+            return f"{text[: found.start()]}. {text[found.end() :]}"
         meant = refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
         if contrast := CONTRAST.match(meant):
             meant = with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])

@@ -140,6 +140,23 @@ SHORTER = tuple(
         (r"\bthe (?:place|home|spot) (?:of|for) ((?:the|my) (?:\w+ )?\w+) is (?:on |in |at )?(?=the |my )",
          r"\1 belongs on "),
         (r"^(how many .+?) (?:did|do|could) you (?:see|find|notice|spot)\b", r"\1 are there"),
+        (r"^(how many \w+) (?:did|have|has|do|does) (?:\w+ ){1,2}?(?:leave|left|keep|got)\b[^.?!]*", r"\1 are there"),
+        (r"^there (?:would|will) not (?:happen to )?be (an? .+?)(?:,? by any chance)?\?*$", r"is there \1"),
+        (r"^is it (?:just|only) me,? or (?=(?:is|are|has|have|does|do)\b)", ""),
+        (r"\bwhere (?:am|are) (?:i|we|you) (?:supposed|meant) to (?=(?:put|keep|leave)\b)", "where should i "),
+        (r"^(?:who|what) is keeping ((?:the|my|our) \w+(?: \w+)?) company\b", r"what is next to \1"),
+        (r"\bwhat (?:do|can) you see (?:in )?there\b", "what is there"),
+        (r"^you (?:did|have) not (?:look|check)(?:ed)? (in|on|at) ([^,.?]+),? (?:did|have) you\b", r"look \1 \2"),
+        (r"^you (?:need not|do not (?:need|have) to) (?:hold|keep)(?: on to)? it(?: any (?:longer|more))?[.!]?$",
+         "put it down"),
+        (
+            rf"^(?:that|this|it) is (?:the|a) (.+?)(?: in (?:this|our|my) {_HOME})?,? (?:so )?(?:please )?"
+            r"(?:learn to |do )?call it that[.!]?$",
+            r"this is called \1",
+        ),
+        (r",? (?:remember it by|call it) that(?: from now on)?[.!]?$", ""),
+        (r"[.;!] (?!(?:the|my|our)\b)(\w+(?: \w+)?), (?:please,? )?(?:both|all) of (?:them|it)\b",
+         r". put them in the \1"),
         (r"^did you (?:see|notice|spot|find|come across) (?=(?:the|my|our)\b)", "have you seen "),
         (r"(?<=\w) when you (?:were|went|passed) (?=(?:in|on|at|by)\b)", " "),
         (

@@ -3,14 +3,14 @@
 import re
 
 from common.language.exchange import verb_first
-from common.language.lexicon import TO_GO
+from common.language.lexicon import A_WISH, TO_GO
 from common.language.politeness import without_politeness
 from common.language.quantities import NUMBERS, UNITS
 
 _NUMBER = rf"(?:a|an|and|of|about|around|another|just|maybe|\d+|{'|'.join(NUMBERS)})"
 DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
 """Words of a length of time, as `quantities.duration` reads them."""
-THERE = r"(?:when|once|as soon as) you(?: are| have)? (?:got there|get there|there|arrived?)"
+THERE = r"(?:when|once|as soon as) you(?: are| have)? (?:got there|get there|(?:(?:in|over|up|down) )?there|arrived?)"
 """Says that something is for when the robot has arrived: `once you are there`."""
 _APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
 _LATER = "(?:from now|time|later|on)"
@@ -34,6 +34,7 @@ _REMIND = re.compile(
 )
 """What somebody is to be told after a while."""
 _YOU = re.compile(r"^you (?:can |could |should |will |may )?")
+_WISHED = re.compile(rf"{A_WISH} (?:the|my|an?|some) .+ (?:here|back)$")
 _TELL = re.compile(r"^tell me that ")
 _WAKE = re.compile(rf"^wake (?:me|us)(?: up)? (?:in|after) (?P<time>{DURATION})(?: {_LATER})?$")
 _SPOKEN = re.compile(
@@ -74,7 +75,9 @@ def in_time(text: str) -> str:
     if found := _PASS.match(bare):
         return f"wait {_plain(found['time'])}"
     for pattern in (_FIRST, _JUST, _LAST):
-        if (found := pattern.match(bare)) and verb_first(rest := _YOU.sub("", without_politeness(found["rest"]))):
+        found = pattern.match(bare)
+        rest = _YOU.sub("", without_politeness(found["rest"])) if found else ""
+        if found and (verb_first(rest) or _WISHED.match(rest)):
             if pattern is _LAST and _SPOKEN.search(rest):
                 continue
             time = next(filter(None, map(found.groupdict().get, ("time", "later", "passed"))))

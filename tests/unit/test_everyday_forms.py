@@ -164,6 +164,25 @@ from evaluation.everyday.understanding import understand
         # A question that begins like an announcement, or with where somebody stands.
         ("-", "Tell me, is there a single thing on that study shelf?", "answer(no)"),
         ("-", "What sits to the right of the red can when I'm facing the counter?", "answer(blue mug)"),
+        ("-", "How many blocks did the kids leave lying around, all in all?", "answer(two|2)"),
+        ("last:go to the bedroom", "What do you see there?", "answer(green bottle, white can, white bottle)"),
+        ("held:blue block", "You needn't hold it any longer.", "drop()"),
+        ("held:yellow bowl", "that's the popcorn bowl in this family, so learn to call it that", "teach(popcorn bowl)"),
+        (
+            "held:orange box",
+            "Right beside the apple is where I want that.",
+            "put(orange box, kitchen table near apple)",
+        ),
+        ("-", "Once you've put the soup on the counter you can go to the dock.", "put(white can, counter); return()"),
+        ("-", "In a quarter of an hour I want the white can here.", "wait(900); fetch(white can)"),
+        ("busy:go to the kitchen", "Please come back, I need you here after all.", "return()"),
+        (
+            "busy:bring me the red can",
+            "Actually, scrap that, I'm off fizzy drinks. The blue bottle.",
+            "replace: fetch(blue bottle)",
+        ),
+        ("-", "Some clown put my mug on the bookshelf, or no, it's on the desk.", "none()"),
+        ("heard:put the apple in the bin", "Good grief, no, I still want to eat it!", "no()"),
     ],
 )
 def test_the_form_is_understood(context: str, said: str, right: str) -> None:

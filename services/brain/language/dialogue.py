@@ -22,7 +22,10 @@ _CORRECTION = re.compile(
 )
 
 
-_BAFFLED = re.compile(r"^\s*(?:what|huh|eh|hm+|sorry|pardon)\s*[?!]+\s*(?=\w)", re.IGNORECASE)
+_BAFFLED = re.compile(
+    r"^\s*(?:(?:what|huh|eh|hm+|sorry|pardon)\s*[?!]+|(?:good|great|dear) (?:grief|lord|heavens|god)[,!]+)\s*(?=\w)",
+    re.IGNORECASE,
+)
 """A cry before the answer proper: `what? no`."""
 _MISHEARD = re.compile(r"^no,? (?:not )?(?:the )?\w+(?: \w+)? (?=i (?:said|meant)\s)")
 _MORE = re.compile(r"\b(?:and|as well|too|also|then)\b")

@@ -149,7 +149,12 @@ def _control(said: str, words: str) -> Interjection | None:
         return Interjection(control, said)  # type: ignore[arg-type]
     if _waits_behind_a_warning(words):
         return Interjection("stop", said)
+    if "here" in reason.split() and not verb_first(reason) and asks_for(first, "come_back"):
+        return Interjection("come_back", first)
     if _called_off_in_part(words):
+        *_, last = words.split(", ")
+        if _THING_ALONE.match(bare := without_politeness(last)):
+            return Interjection("replace", bare)
         return Interjection("cancel", said)
     return Interjection("stop", said) if _waits(words) else None
 
