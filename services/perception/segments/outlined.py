@@ -10,8 +10,9 @@ from scipy import ndimage
 
 from common.geometry import Array, Mask, Rectangle
 from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels, guessed
+from services.perception.segments.in_line import JOIN, end_to_end
 from services.perception.segments.segment import NEARER, RIM, Segment, Surface
-from services.perception.shapes import silhouette
+from services.perception.shapes import primitives, silhouette
 from services.perception.shapes.measurement import Measurement
 from services.perception.views.view import View
 from services.perception.views.visible_plan import Cloud
@@ -29,6 +30,8 @@ which it is no outline; least share of its lower edge below which the surface is
 OWN, OWN_SHARE = 0.015, 0.6
 """How far [m] around the shape what was measured is of the object itself, and the share of a part that has to be."""
 
+SAMPLE, GRID = 120, 12
+"""Points of a part that are looked at, and points along a side of a face."""
 SEAM = 2
 """Width [pixels] of the line between two parts that is of neither."""
 
@@ -169,6 +172,43 @@ def with_parts(view: View, segment: Segment, parts: list[Segment]) -> Segment:
     # What is wider above its foot seems to stand behind it: its lit parts say where it is.
     foot = guessed(view, lit, (segment.rows, segment.columns))
     return replace(segment, rows=lit[0], columns=lit[1], points=points[-len(lit[0]) :], shape=None, dark=foot)
+
+
+def with_rest(segment: Segment, rest: list[Segment]) -> Segment:
+    """An object that was seen by its outline, and the lit `rest` of it that lies in line with it: a box around all."""
+    if not rest or segment.shape is None:
+        return segment
+    shape, floor = segment.shape, segment.surface.height
+    points = np.concatenate([segment.points, *(p.points for p in rest)])
+    every = np.concatenate([_block(shape), points - (0.0, 0.0, floor)])
+    _, yaw, (length, width), (x, y) = primitives.rectangle(every[:, :2], 12)[0]
+    if width > length:
+        length, width, yaw = width, length, yaw + math.pi / 2
+    size = float(length), float(width), max(shape.size[2], *(p.top for p in rest))
+    yaw = math.remainder(float(yaw), math.pi)
+    return replace(
+        segment,
+        rows=np.concatenate([segment.rows, *(p.rows for p in rest)]),
+        columns=np.concatenate([segment.columns, *(p.columns for p in rest)]),
+        points=points,
+        shape=Measurement("box", float(x), float(y), yaw, size, shape.residual, max(shape.spread, OWN), free=5),
+    )
+
+
+def in_line(segment: Segment, part: Segment) -> bool:
+    """A lit part goes on where an object ends that was seen by its outline: a handle, whose blade is black."""
+    if segment.shape is None:
+        return False
+    block, over = _block(segment.shape), part.points - (0.0, 0.0, part.surface.height)
+    apart = np.linalg.norm(block[:, None, :2] - over[None, :: max(1, len(over) // SAMPLE), :2], axis=2).min()
+    return float(apart) < JOIN and end_to_end([block, over])
+
+
+def _block(shape: Measurement) -> Array:
+    """Points (n, 3) over the surface all over the upper face of a box around a shape."""
+    u, v = (side.ravel() - 0.5 for side in np.meshgrid(np.linspace(0, 1, GRID), np.linspace(0, 1, GRID)))
+    u, v, (c, s) = u * shape.size[0], v * shape.size[1], (math.cos(shape.yaw), math.sin(shape.yaw))
+    return np.stack([shape.x + c * u - s * v, shape.y + s * u + c * v, np.full(len(u), shape.size[2])], axis=1)
 
 
 def is_part(points: Array, shape: Measurement) -> bool:

@@ -8,14 +8,14 @@ from common.geometry import Array, Mask
 from services.perception.segments.air import ATTACHED, gap, hangs
 from services.perception.segments.alike import BRIDGED, one_in_picture
 from services.perception.segments.dark import Blobs, Pixels, guessed
+from services.perception.segments.in_line import JOIN, end_to_end
+from services.perception.segments.in_line import LONGEST as LONGEST_TOOL
 from services.perception.segments.segment import Segment, Surface, covered
 from services.perception.views.view import View
 
 JUMP, JUMP_PER_METRE = 0.022, 0.012
 """Step of depth [m] between neighbouring pixels that separates two objects, and what is added per metre [m/m], as depth
 noise and the slope between two pixels grow with the distance."""
-JOIN = 0.02
-"""Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
 JOINED_EXTENT, LONGEST = 0.17, 0.30
 """Largest extents [m] on the floor plan of what is joined, and of what is joined because the picture shows it as one.
 Chosen: a bowl and its noise; a watering can with its spout."""
@@ -76,6 +76,10 @@ def joined(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, 
             near = extent < JOINED_EXTENT and (one_blob or distance < JOIN)
             if near or (extent < LONGEST and distance < BRIDGED and one_in_picture(view, plane, parts[i], parts[j])):
                 groups[groups == groups[j]] = groups[i]
+            elif distance < JOIN and extent < LONGEST_TOOL:
+                both = [np.concatenate([clouds[k] for k in np.flatnonzero(groups == groups[n])]) for n in (i, j)]
+                if end_to_end([_over(plane, points) for points in both]):
+                    groups[groups == groups[j]] = groups[i]
     _carried(view, plane, clouds, groups)
     found = []
     h, w = view.shape
@@ -111,6 +115,11 @@ def _carried(view: View, plane: Array, clouds: list[NDArray[np.float64]], groups
         distance, nearest = min((gap(points, clouds[k]), k) for k in others)
         if distance < ATTACHED:
             groups[groups == groups[nearest]] = group
+
+
+def _over(plane: Array, points: Array) -> Array:
+    """Points (n, 3) with their heights over the surface z = plane (3,) @ (x, y, 1)."""
+    return np.column_stack([points[:, :2], points[:, 2] - points[:, :2] @ plane[:2] - plane[2]])
 
 
 def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

@@ -13,7 +13,7 @@ from common.geometry import Array, Mask, Rectangle
 from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.flat import patches
 from services.perception.segments.floor import SEARCH, layers
-from services.perception.segments.outlined import is_part, on_surface, with_parts
+from services.perception.segments.outlined import in_line, is_part, on_surface, with_parts, with_rest
 from services.perception.segments.parts import JUMP, between_jumps, joined
 from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on, with_top
 from services.perception.views.view import View, Window
@@ -212,6 +212,9 @@ def _on(
         own_parts = [p for p in left if one.shape is not None and is_part(p.points, one.shape)]
         left = [p for p in left if not any(p is part for part in own_parts)]
         whole.append(with_parts(view, one, own_parts))
+        rest = [p for p in left if in_line(whole[-1], p)]
+        left = [p for p in left if not any(p is part for part in rest)]
+        whole[-1] = with_rest(whole[-1], rest)
     return whole + [p for p in left if not _is_of_furniture(view, p, over_it, by_walls)]
 
 

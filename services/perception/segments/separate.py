@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from common.geometry import Point, Rectangle
 from services.perception.segments.air import hangs
 from services.perception.segments.colours import FEW_IN_A_CROWD, IN_A_CROWD, LEAST_SHARE, by_colour
+from services.perception.segments.in_line import LONGEST, WIDEST, end_to_end
 from services.perception.segments.joints import jointed
 from services.perception.segments.parts import between_jumps
 from services.perception.segments.seams import unseamed
@@ -45,8 +46,6 @@ VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND, BRIDGE = 0.006, 0.01
 """Half width [m] of that line, and of what is looked through under it."""
-LONGEST, WIDEST = 0.42, 0.12
-"""Extents [m] on the floor plan up to which what is too long for a vessel is one object: a ladle, a rolling pin."""
 HANDLED = 0.5
 """Extent [m] on the floor plan up to which what carries a handle that hangs in the air is one: a pan, a rolling pin."""
 SLIMMEST = 3.0
@@ -93,7 +92,7 @@ def _crowd(view: View, segment: Segment, noise: float, long: bool) -> tuple[NDAr
         hanging = np.isin(cut, in_air)
         body = segment.points[~hanging, :2]
         handled = hanging.any() and extent(segment) < HANDLED and np.ptp(body, axis=0).max() < MAX_EXTENT
-        if joint is None and (long or handled):
+        if (joint is None and (long or handled)) or (long and _in_line(segment, cut)):
             return None, hanging
         cut = cut if joint is None else joint
     if cut is None:
@@ -116,7 +115,7 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
             # The waist between a blade and its handle parts them no more than their colours do.
             return [whole]
     for cut in (coloured, by_valley(view, segment), by_jump(view, segment)):
-        if cut is None or (cut := jointed(view, segment, cut, noise)) is None:
+        if cut is None or _in_line(segment, cut) or (cut := jointed(view, segment, cut, noise)) is None:
             continue
         cuts = [Piece(s, measured(view, s)) for s in _cut(view, segment, cut)]
         hanging = np.isin(cut, [n for n, piece in enumerate(cuts) if _hangs(view, piece, noise)])
@@ -145,6 +144,12 @@ def _level_joined(view: View, segment: Segment, cut: NDArray[np.intp], parts: li
     if joint is None or int(joint.max()) + 1 == len(parts):
         return [] if joint is None else parts
     return [Piece(s, measured(view, s)) for s in _cut(view, segment, joint)]
+
+
+def _in_line(segment: Segment, cut: NDArray[np.intp]) -> bool:
+    """The pieces of a cut (n,) lie end to end: they are a tool's."""
+    over = segment.points - (0.0, 0.0, segment.surface.height)
+    return end_to_end([over[cut == n] for n in range(int(cut.max()) + 1)])
 
 
 def _with_handle(view: View, whole: Piece, hanging: NDArray[np.bool_]) -> Piece:
