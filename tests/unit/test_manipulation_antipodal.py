@@ -192,6 +192,15 @@ def test_a_long_thing_is_taken_across_near_its_middle_from_above() -> None:
     assert best.width == pytest.approx(0.03, abs=0.012)
 
 
+def test_what_is_heavy_at_one_end_is_taken_nearer_to_that() -> None:
+    """A paddle whose blade is too wide for the hand."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(-0.13, 0.131, 0.004), np.arange(-0.05, 0.051, 0.004)))
+    inside = ((x < 0.03) & (np.abs(y) <= 0.012)) | (np.hypot(x - 0.08, y) <= 0.05)
+    points = np.stack([x, y, np.full(len(x), 0.009)], axis=1)[inside]
+    best = grasps(target("irregular", (0.26, 0.1, 0.018), points))[0]
+    assert 0.01 < best.pose.position[0] - AT[0] < 0.03 and best.width < 0.03
+
+
 def test_a_low_thing_with_a_wide_end_is_taken_across_its_blade() -> None:
     """Scissors: the pads touch hardly more of it than their tips."""
     blade = np.array(

@@ -84,6 +84,7 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     least, guessed = THIN if min(target.size) > 2 * THIN else 0.0, guessed_along(target)
     if kind_of(target.kind).shape == "sphere":
         least = max(least, CHORD * min(target.size))
+    balance = _balance(target, points - centre)
     found: list[_Found] = []
     for rotation, tilt, off, name in _directions(target, facing, _across(target, points)):
         if on_handle(target, rotation):
@@ -96,13 +97,22 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             if not len(there.at):
                 continue
             arm = there.at @ rotation.T
-            worth = _worth(target, there, arm, tilt, off, widest) - less
+            worth = _worth(target, there, arm - balance, tilt, off, widest) - less
             near = np.hypot(arm[:, 0], arm[:, 1]) <= LEVER
             found += [
                 _Found(rotation, math.radians(tilt), name, upper, *row)
                 for row in zip(*(a[near] for a in (there.at, centre + arm, there.width, worth)), strict=True)
             ]
     return [one.grasp(target.bottom) for one in _different(found)]
+
+
+def _balance(target: Target, points: Array) -> Array:
+    """Where (3,), level, from the middle of its extents an object is taken to be balanced: in the middle of its body
+    (n, 3), which of what is thick at one end is nearer to that. How deep the body of what stands is, is a guess.
+    """
+    told = target.points is not None and target.family in SHAPELESS and target.size[2] < LOW
+    found: Array = points.mean(axis=0) * (1.0, 1.0, 0.0) if told else np.zeros(3)
+    return found
 
 
 @dataclass(frozen=True)
