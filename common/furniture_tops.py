@@ -16,13 +16,13 @@ def support_at(plan: FloorPlan, x: float, y: float) -> Receptacle | None:
     if (surface := plan.surface_at(x, y)) is not None:
         return surface
     under = [f for f in plan.standing if f.outline.contains(x, y)]
-    return _held_by(plan, max(under, key=lambda f: f.top), (x, y)) if under else None
+    return held_by(plan, max(under, key=lambda f: f.top), (x, y)) if under else None
 
 
 def seats(plan: FloorPlan) -> list[Receptacle]:
     """The tops of sofas, beds and chairs."""
     return [
-        _held_by(plan, f, f.center[:2])
+        held_by(plan, f, f.center[:2])
         for f in plan.standing
         if SEAT[0] <= f.top <= SEAT[1]
         and min(f.size[:2]) >= SEAT_SIDE
@@ -31,7 +31,7 @@ def seats(plan: FloorPlan) -> list[Receptacle]:
     ]
 
 
-def _held_by(plan: FloorPlan, box: Box, at: Vec2) -> Receptacle:
+def held_by(plan: FloorPlan, box: Box, at: Vec2) -> Receptacle:
     """The top of a box; a side is free where nothing higher is between a point on it and the floor before it."""
     higher = [f.outline for f in plan.standing if f.top > box.top + BACK] + [w.footprint for w in plan.walls]
     u, v = box.outline.to_local(*at)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from common.floor_plan import Vec3
+from common.furniture_tops import seats
 from common.household import Household, load_household, told
 from common.rendering.raycast import render
 from common.scene import ObjectSpec, load_scene
@@ -26,27 +27,29 @@ LENGTH, THICK = 0.16, 0.05
 FLAT: Vec3 = (LENGTH, 0.11, THICK)
 
 
-def seen_with_box(over: float, size: Vec3 = FLAT) -> tuple[View, Household, tuple[float, float, float]]:
-    """The kitchen table with a flat box that reaches `over` its free edge by so much [m], from before that."""
+def seen_with_box(
+    over: float, size: Vec3 = FLAT, on: str = "kitchen table"
+) -> tuple[View, Household, tuple[float, float, float]]:
+    """A table, or a seat, with a flat box that reaches `over` its free edge by so much [m], from before that."""
     plan = load_scene("apartment")
-    table = plan.surface("kitchen table")
-    assert table is not None
-    x, y, z = table.center
-    edge = x - table.size[0] / 2
-    at = (edge + size[0] / 2 - over, y)
+    (top,) = (r for r in (*plan.receptacles, *seats(plan)) if r.name == on)
+    x, y, z = top.center
+    way = -1 if on == "kitchen table" else 1
+    edge = x + way * top.size[0] / 2
+    at = (edge - way * (size[0] / 2 - over), y)
     box = ObjectSpec(
         name="box", kind="block", colour="red", size=size, mass=0.2, rgba=(0.8, 0.1, 0.1, 1.0),
-        position=at, yaw=0.0, on="kitchen table",
+        position=at, yaw=0.0, on=on,
     )  # fmt: skip
     scene = msgspec.structs.replace(plan, objects=(box,))
     model = mujoco.MjModel.from_xml_string(world_mjcf(scene, place_objects(scene, 0)))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    position = np.array([edge - 0.5, y, 1.3])
+    position = np.array([edge + way * 0.5, y, 1.3 if way < 0 else 1.0])
     down = math.radians(45)
     # Right, down, ahead of the camera in the map's axes.
-    ahead = np.array([math.cos(down), 0.0, -math.sin(down)])
-    right = np.array([0.0, -1.0, 0.0])
+    ahead = np.array([-way * math.cos(down), 0.0, -math.sin(down)])
+    right = np.array([0.0, float(way), 0.0])
     rotation = np.stack([right, np.cross(ahead, right), ahead], axis=1)
     rgb, depth = render(model, data, position, rotation @ np.diag([1.0, -1.0, -1.0]), FOVY, WIDTH, HEIGHT)
     focal = HEIGHT / 2 / math.tan(math.radians(FOVY) / 2)
@@ -65,6 +68,14 @@ def test_it_is_measured_as_a_whole_though_all_is_seen_lower_than_it_is(over: flo
     assert len(found) == 1
     assert math.dist(found[0].position[:2], at[:2]) < 0.012
     assert found[0].size == pytest.approx((LENGTH, 0.11, THICK), abs=0.015)
+
+
+@pytest.mark.parametrize("over", [0.0, 0.07])
+def test_what_reaches_over_the_edge_of_a_seat_is_measured_as_a_whole(over: float) -> None:
+    view, household, at = seen_with_box(over, on="sofa seat")
+    (found,) = (d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "sofa seat")
+    assert math.dist(found.position[:2], at[:2]) < 0.012
+    assert found.size == pytest.approx((LENGTH, 0.11, THICK), abs=0.015)
 
 
 @pytest.mark.parametrize(("high", "seen"), [(0.33, True), (0.6, False)], ids=["a tall bottle", "a post"])

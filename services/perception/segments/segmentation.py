@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.floor_plan import FloorPlan, Receptacle
+from common.furniture_tops import held_by
 from common.geometry import Array, Mask, Rectangle
 from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.flat import patches
@@ -82,8 +83,10 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         found += [s for s in _on(view, surface, cloud, near, own, dark, beyond) if r.depth or _stands_on(s, r)]
     for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
-        over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
-        found += _on(view, surface, over.outside(on_it), near, own, dark)
+        outline, top = f.outline.grown(-WALL_EDGE), held_by(floor_plan, f, f.center[:2])
+        over, beyond = _over(view, usable, outline, surface.height), _beyond(view, usable, top, outline)
+        on_top = _on(view, surface, over.outside(on_it), near, own, dark, beyond.outside(on_it))
+        found += [s for s in on_top if _stands_on(s, top)]
     above = _above_floor(view, usable)
     looked_at = np.zeros(view.shape, bool)
     for _, _, ground in above:
