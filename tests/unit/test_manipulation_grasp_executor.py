@@ -43,9 +43,10 @@ def grab(monkeypatch: pytest.MonkeyPatch, carried: Grip) -> str:
         return plan
 
     robot = SimpleNamespace(
-        config=ManipulationConfig(), grip=Grip(0.0307, 25.0), joints=AT, now=0.0, phase="", grasped=None, sent_to={},
-        contacts=SimpleNamespace(clear=lambda: None), source=SimpleNamespace(remember=lambda *_: None),
-        move_gripper=nothing, travel=nothing, follow=nothing, at_rest=nothing, guard=lambda *_: None,
+        config=ManipulationConfig(), grip=Grip(0.0307, 25.0), joints=AT, now=0.0, phase="", grasped=None,
+        sent_to={}, met_before=[], contacts=SimpleNamespace(clear=lambda: None),
+        source=SimpleNamespace(remember=lambda *_: None), move_gripper=nothing, travel=nothing, follow=nothing,
+        at_rest=nothing, guard=lambda *_: None,
     )  # fmt: skip
     hand = SimpleNamespace(share=lambda width: 0.0, open=0.085)
     monkeypatch.setattr(grasp_executor, "planner_of", lambda robot: SimpleNamespace(arm=SimpleNamespace(hand=hand)))
@@ -104,7 +105,7 @@ def test_where_the_hand_has_closed_on_nothing_it_does_not_try_again_by_the_same_
     log = SimpleNamespace(info=lambda *_, **__: None, warning=lambda *_, **__: None)
     robot = SimpleNamespace(
         config=ManipulationConfig(), grip=Grip(0.0, 0.0), base=(0.0, 0.0, 0.0), now=0.0, phase="", grasped=None,
-        sent_to={}, contacts=SimpleNamespace(clear=lambda: None), move_gripper=nothing,
+        sent_to={}, met_before=[], contacts=SimpleNamespace(clear=lambda: None), move_gripper=nothing,
         io=SimpleNamespace(household=None, publish=lambda *_: None, log=log),
     )  # fmt: skip
     fakes = {
