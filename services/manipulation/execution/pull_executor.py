@@ -117,8 +117,14 @@ def _execute(robot: Robot, plan: Pull, found: WorldObject) -> Steps[WorldObject]
     if robot.phase == "pull":
         found = _remember(robot, plan, found)
     if stuck is None:
-        yield from robot.follow(plan.leave, speed * 0.5)
-        yield from robot.travel(plan.home)
+        try:
+            yield from robot.follow(plan.leave, speed * 0.5)
+            yield from robot.travel(plan.home)
+        except Failure as failure:
+            # It lies where it was pulled to; another way home from here.
+            robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+            robot.forget_command()
+            yield from go_home(robot)
     else:
         yield from _leave(robot)
     yield from robot.move_gripper(0.0)
