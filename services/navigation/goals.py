@@ -5,7 +5,7 @@ import math
 import msgspec
 
 from common import messages as m
-from common.approach import delivers_at_home, poses_for
+from common.approach import FOOTPRINT, delivers_at_home, poses_for
 from common.floor_plan import Receptacle, Room
 from common.furniture_tops import support_at
 from common.geometry import SIDES, Pose2
@@ -20,8 +20,9 @@ Choices = list[tuple[float, Pose2]]
 
 SAME = 0.4
 """An object reported within this of where a goal says that it is, is the goal's [m]: as far as a push moves one."""
-INSIDE, SPACING = 0.5, 0.3
-"""Of the spots in a room, the distance from its sides and from each other [m]: a footprint, and half of one."""
+INSIDE, SPACING = FOOTPRINT + 0.06, 0.2
+"""Of the spots in a room, the distance from its sides and from each other [m]; chosen: all of the base is inside, and
+one is in a strip of 0.9 m that a bed leaves along a wall, in which the base has 28 cm."""
 UNLISTED = 3.0
 """Penalty [m] of a pose before a side of a surface that the household does not list as free: as much as a way round of
 20 m. Chosen: where the floor is free all the same, it serves."""
