@@ -50,9 +50,6 @@ BARRED = 0.25
 """Radius [m] around a position that could not be reached in which no other is tried. Chosen: a footprint's."""
 MOST = 500
 """Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
-FLOOR_MOST, TOPS_MOST = 60.0, 180.0
-"""Cells of floor and of surfaces beyond which a view is worth no more [count]. Chosen: the rest of the floor is seen on
-the way, surfaces only where the robot stands, and one picture shows some half a square metre of a bed."""
 NEIGHBOURS = 1
 """Rows and columns of the longest step of a way [cells]: 8 directions."""
 HOME_COST = 1.0
@@ -176,12 +173,10 @@ def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, co
     for k in range(HEADINGS):
         heading = 2 * math.pi * k / HEADINGS
         off = np.abs(np.mod(bearing - heading + math.pi, 2 * math.pi) - math.pi)
-        in_view = seen & (off < HALF_VIEW)
-        gains = in_view.sum(axis=1) * share
-        tops = in_view[:, surface].sum(axis=1) * share
+        gains = (seen & (off < HALF_VIEW)).sum(axis=1) * share
         turn = abs(math.remainder(heading - here[2], 2 * math.pi))
-        worth = np.minimum(gains - tops, FLOOR_MOST) + np.minimum(tops, TOPS_MOST)
-        scores = worth / (HOME_COST + costs + 0.15 * turn)
+        # What a place shows beyond some 60 cells is seen on the way as well.
+        scores = np.minimum(gains, 60.0) / (HOME_COST + costs + 0.15 * turn)
         n = int(np.argmax(scores))
         if gains[n] >= 2.0 and scores[n] > best_score:
             best_score = float(scores[n])
