@@ -7,7 +7,8 @@ import msgspec
 from common.kinds import kind_of
 
 LIFTED = 0.05
-"""Rise [m] above where it stood that counts as lifted: more than any object of the scenes can tip up on an edge."""
+"""Rise [m] above the lowest it was out of the hand that counts as lifted: more than any object of the scenes can tip up
+on an edge."""
 MOVED = 0.03
 """Displacement [m] from which an object counts as moved; physics at rest creeps by less than 1 mm."""
 TOPPLED = math.radians(15)
@@ -33,12 +34,14 @@ class ThingState(msgspec.Struct, frozen=True):
 class Track(msgspec.Struct):
     """`carried` [m]: way of the base with it in the hand. `shift` [m], `lean` [rad]: the most since the baseline.
 
-    `lost_at` [m]: height at which the hand lost it, at the time `let_go` [s], until something holds it up again."""
+    `lowest` [m]: height out of the hand since the baseline. `lost_at` [m]: height at which the hand lost it, at
+    `let_go` [s], until something holds it up again."""
 
     kind: str
     bins: frozenset[str]
     baseline: ThingState
     last: ThingState
+    lowest: float = math.inf
     lifted: bool = False
     carried: float = 0.0
     dropped: bool = False
@@ -50,7 +53,7 @@ class Track(msgspec.Struct):
 
     def restart(self) -> None:
         """Take the last sample as the baseline: what has happened so far was the world settling."""
-        self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
+        self.baseline, self.lowest, self.shift, self.lean = self.last, math.inf, 0.0, 0.0
 
     def add(self, now: ThingState, t: float, driven: float) -> None:
         """Take the object at time `t` [s]; the base has driven `driven` [m] since the sample before."""
@@ -60,10 +63,14 @@ class Track(msgspec.Struct):
         self.shift = max(self.shift, math.dist(now.position, self.baseline.position))
         self.lean = max(self.lean, abs(now.tilt - self.baseline.tilt))
         if now.held:
-            self.lifted = self.lifted or now.position[2] - self.baseline.position[2] > LIFTED
+            # What fell from a shelf is lifted from the floor.
+            rested = min(self.lowest, self.baseline.position[2])
+            self.lifted = self.lifted or now.position[2] - rested > LIFTED
             self.carried += driven
             # What slipped and was picked up again is judged by the carry that followed.
             self.dropped = self.dropped and before.held
+        else:
+            self.lowest = min(self.lowest, now.position[2])
         if not self.dropped and self._fell(before, t):
             self.dropped, self.drops = True, self.drops + 1
         if self.dropped and now.on in self.bins and t - self.let_go < FALL:

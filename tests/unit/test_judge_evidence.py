@@ -100,6 +100,14 @@ def test_five_centimetres_sharp_are_not_lifted() -> None:
     assert not mug([sample(0.0, floor), sample(1.0, floor, 2.4), sample(2.0, low), *GOOD[5:]]).lifted
 
 
+@pytest.mark.parametrize(("height", "lifted"), [(0.06, True), (0.04, False)])
+def test_what_fell_is_lifted_from_where_it_came_to_lie(height: float, lifted: bool) -> None:
+    fallen = changed(ON_TABLE, position=(3.0, 0.3, 0.0), on="floor")
+    raised = sample(3.0, changed(HELD, position=(3.0, 0.3, height)), 1.2)
+    found = mug([*GOOD[:2], sample(1.5, fallen, 2.4), sample(2.0, fallen, 2.4), raised, *GOOD[5:]])
+    assert found.lifted == lifted and found.drops == 1
+
+
 def test_what_has_been_lifted_stays_so_and_is_carried_only_in_the_hand() -> None:
     low = changed(HELD, position=(3.0, 0.0, 0.71))
     found = mug([*GOOD[:4], sample(4.0, low, 1.0), sample(5.0, changed(low, held=False), 0.5), sample(6.0, ON_TRAY)])
