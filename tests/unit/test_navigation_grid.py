@@ -277,12 +277,12 @@ def test_what_stood_there_for_longer_is_remembered() -> None:
 
 def test_doubt_forgets_what_is_out_of_sight() -> None:
     made = costmap(ROOM)
-    made.obstacles.doubt(5.0, 1.0)
+    made.obstacles.doubt(5.0, 1.0, (0.0, 0.0))
     assert made.version == 0
     see(made, 1.0, d0=1.0)
-    made.obstacles.doubt(3.0, 2.0)
+    made.obstacles.doubt(3.0, 2.0, (0.0, 0.0))
     assert not made.obstacles.empty and made.version == 1
-    made.obstacles.doubt(3.1, 2.0)
+    made.obstacles.doubt(3.1, 2.0, (0.0, 0.0))
     assert made.obstacles.empty and made.version == 2
     assert made.clearance(4.0, 3.0) > 0.9, "the distances follow"
 
@@ -413,7 +413,7 @@ def test_what_the_lidar_sees_is_planned_around_but_is_no_wall_for_ever() -> None
     made.obstacles.see((3.0, 4.0, math.pi / 2), EAST, scan(d0=0.7), 10.0, 1.0)
     assert paths.cost_to(paths.field(*WEST), EASTERN) == math.inf
     assert paths.possible(WEST, [EASTERN]), "the static map has a way"
-    made.obstacles.doubt(10.0, 1.0)
+    made.obstacles.doubt(10.0, 1.0, (0.0, 0.0))
     assert math.isfinite(paths.cost_to(paths.field(*WEST), EASTERN))
 
 

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from common import messages as m
 from common import topics
@@ -90,11 +91,19 @@ def test_what_is_held_or_on_something_is_not_in_the_way() -> None:
 def test_what_shut_every_way_is_tried_once_it_has_not_been_seen_for_a_while() -> None:
     floor = Floor()
     floor.scan(5.0)
-    floor.map.obstacles.doubt(7.0, 3.0)
+    floor.map.obstacles.doubt(7.0, 3.0, (0.0, 0.0))
     assert floor.shut(thing(5.0)), "seen since"
-    floor.map.obstacles.doubt(9.0, 3.0)
+    floor.map.obstacles.doubt(9.0, 3.0, (0.0, 0.0))
     assert not floor.shut(thing(5.0))
     assert floor.shut(thing(9.0)), "it is there after all"
+
+
+@pytest.mark.parametrize(("away", "kept"), [(0.99, True), (1.01, False)])
+def test_what_lies_too_near_to_be_seen_again_in_time_is_not_driven_over(away: float, kept: bool) -> None:
+    floor = Floor()
+    floor.scan(5.0)
+    floor.map.obstacles.doubt(9.0, 3.0, (2.0 - away, 0.0))
+    assert floor.shut(thing(5.0)) == kept
 
 
 def test_a_disc_that_nobody_sees_any_more_shuts_no_way_for_good() -> None:

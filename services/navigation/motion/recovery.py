@@ -55,7 +55,7 @@ class Recovery:
         if self._retries >= self._config.retries:
             raise Ended("failed", code, f"{why} after {self._retries} retries")
         self._retries += 1
-        self._map.obstacles.doubt(now, OUT_OF_SIGHT)
+        self._map.obstacles.doubt(now, OUT_OF_SIGHT, pose[:2])
         config = self._config
         radius = config.footprint_radius
         if touching:

@@ -20,6 +20,10 @@ PICTURE = 0.2
 LATE = 4.0
 """Time [s] after its picture within which an object is reported; chosen: several times what perception takes."""
 
+UNSEEN = 1.0
+"""Distance [m] from the robot within which its head camera may not see a thing on the floor again before the base is
+upon it: the picture begins 0.45 m before its middle, and only where it looks."""
+
 
 class LowThings:
     """Enters low things in a costmap as circles.
@@ -40,10 +44,11 @@ class LowThings:
             self._scans.popleft()
 
     def place(self, objects: Sequence[m.WorldObject]) -> None:
-        """Enter the reported objects that are on the floor, except those not seen since the costmap was doubted."""
+        """Enter the reported objects that are on the floor, except those not seen since the costmap was doubted from
+        so far off that they would be seen again on the way there."""
         lying = [o for o in objects if not o.held and o.position[2] - o.size[2] / 2 < ON_FLOOR]
         self._tall = {o.label: self._judged(o) for o in lying}
-        circles = [_circle(o) for o in lying if o.seen_at > self._map.obstacles.doubted and self._stands(o)]
+        circles = [_circle(o) for o in lying if self._believed(o) and self._stands(o)]
         self._map.place(sorted(circles), "floor")
 
     def _judged(self, o: m.WorldObject) -> tuple[float, bool]:
@@ -55,6 +60,10 @@ class LowThings:
         around = [points for at, points in self._scans if abs(at - o.seen_at) <= PICTURE]
         near = any((np.hypot(points[:, 0] - x, points[:, 1] - y) < radius + AROUND).any() for points in around)
         return o.seen_at, near
+
+    def _believed(self, o: m.WorldObject) -> bool:
+        seen = self._map.obstacles
+        return o.seen_at > seen.doubted or math.dist(o.position[:2], seen.doubted_at) < UNSEEN
 
     def _stands(self, o: m.WorldObject) -> bool:
         x, y, radius = _circle(o)

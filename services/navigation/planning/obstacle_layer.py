@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_grid import Cells
-from common.geometry import Array, Mask, Pose2
+from common.geometry import Array, Mask, Point, Pose2
 from services.navigation.planning.changes import Changes
 from services.navigation.planning.seen_cells import STANDS, STIRS, SeenCells
 
@@ -23,7 +23,8 @@ class ObstacleLayer:
     """Cells in which the lidar sees something; `explained` (rows, columns): those that the static map explains.
 
     `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`. `version` grows with
-    every change. `doubted`: robot time [s] up to which what was seen last then may be gone.
+    every change. `doubted`: robot time [s] up to which what was seen last then may be gone, `doubted_at`: where the
+    robot was then [map].
     """
 
     def __init__(self, cells: Cells, memory: float, lasting_after: float = math.inf) -> None:
@@ -32,7 +33,7 @@ class ObstacleLayer:
         self.changes = Changes(cells.shape, lasting_after)
         self.explained: Mask = np.zeros(cells.shape, bool)
         self.version = 0
-        self.doubted = -math.inf
+        self.doubted, self.doubted_at = -math.inf, (math.inf, math.inf)
 
     # --- what is there
     @property
@@ -133,9 +134,9 @@ class ObstacleLayer:
         self._seen.drop((rows[gone], columns[gone]))
 
     # --- what is forgotten, and what is not
-    def doubt(self, now: float, age: float) -> None:
-        """Forget what has been out of sight for `age` seconds or longer, as it may be gone."""
-        self.doubted = now - age
+    def doubt(self, now: float, age: float, here: Point) -> None:
+        """Forget what has been out of sight for `age` seconds or longer, as it may be gone; the robot is `here`."""
+        self.doubted, self.doubted_at = now - age, here
         rows, columns = self._seen.cells()
         gone = self._seen.unseen_for((rows, columns), age, now)
         if gone.any():
