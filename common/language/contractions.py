@@ -83,7 +83,7 @@ _CONTRACTIONS = tuple(
         (r"\b(call|name) (?:the|this) (?:place|spot) where you (?:are|stand)(?: now| at present)?\b", r"\1 this place"),
         (r"\b(which one)'s\b", r"\1 is"),
         (r"^tell (?:me|us), (?=(?:is|are|what|where|which|how|who|do|does|have|has|any)\b)", ""),
-        (r"\b(?:say|repeat) (?:that|it|this) (?:again|once more|one more time)\b", "do that again"),
+        (r"\brepeat (?:that|it|this) (?:again|once more|one more time)\b", "do that again"),
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
         (r"\b(whatever|everything|anything|something|nobody)'?s\b", r"\1 is"),
