@@ -117,6 +117,10 @@ class Finish(Strict, frozen=True, kw_only=True):
     tables: Literal["", "wood", "cloth", "stone"] = ""
 
 
+_MARKS = frozenset('<>&"/')
+"""What XML would have to be told twice, and what parts a robot's name from its part's."""
+
+
 class Scene(FloorPlan, frozen=True, kw_only=True):
     """A whole apartment with everything in it. Without `lamps` each room has one in the middle of its ceiling."""
 
@@ -155,6 +159,9 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
         ):
             if twice := doubled(names):
                 return f"{label} {twice!r} is defined twice"
+        for name in self._in_model():
+            if marks := sorted(_MARKS & set(name)):
+                return f"name {name!r} has {' '.join(marks)} in it, which no model's name may have: leave it out"
         for spec in self.objects:
             if found := spec.fault():
                 return f"object {found}"
@@ -170,6 +177,11 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
             if spec.on == FLOOR and spec.position is None:
                 return f"object {spec.name!r} is on the floor and needs a position"
         return ""
+
+    def _in_model(self) -> list[str]:
+        """Names that the simulation's model has of it."""
+        parts = *self.objects, *self.obstacles, *self.furniture, *self.receptacles
+        return [self.name, *(part.name for part in parts)]
 
 
 def scene_path(name: str) -> Path:

@@ -1,6 +1,7 @@
 """A scene and a seed as MJCF: apartment, robot, free objects."""
 
-from collections.abc import Sequence
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Sequence
 
 from common.furniture_parts import parts
 from common.scene import Receptacle, Scene
@@ -19,6 +20,26 @@ CCD_TOLERANCE = 1e-8
 that it hardly touches is found on the far side of the pad, 8 mm deep, and what is held is struck with 200 N."""
 
 
+class _Names:
+    """Names of geoms, of which MuJoCo allows each once: of the robot's parts and the world's a `palm` may be either."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._taken = set(taken)
+
+    def free(self, name: str) -> str:
+        """The name, with an underscore behind it for each that has it already."""
+        name = name.replace(" ", "_")
+        while name in self._taken:
+            name += "_"
+        self._taken.add(name)
+        return name
+
+
+def _names(bodies: Iterable[str]) -> _Names:
+    parts = (geom.get("name") for body in bodies for geom in ET.fromstring(f"<body>{body}</body>").iter("geom"))
+    return _Names(["floor", *(name for name in parts if name)])
+
+
 def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0, group: int = 0) -> str:
     half = " ".join(f"{v / 2:.4f}" for v in size)
     pos = " ".join(f"{v:.4f}" for v in center)
@@ -31,30 +52,29 @@ def _apart(box: str) -> str:
     return f"<body>{box}</body>"
 
 
-def _walls(scene: Scene) -> str:
+def _walls(scene: Scene, names: _Names) -> str:
     parts = []
     for n, wall in enumerate(scene.walls):
         around = wall.footprint
         center, size = (around.x, around.y, wall.height / 2), (around.length, around.width, wall.height)
         rgba, group = (_GLASS, GLASS_GROUP) if wall.glass else ("0.86 0.84 0.80 1", 0)
-        parts.append(_apart(_box(f"wall_{n}", center, size, rgba, around.yaw, group)))
+        parts.append(_apart(_box(names.free(f"wall_{n}"), center, size, rgba, around.yaw, group)))
     return "".join(parts)
 
 
-def _furniture(scene: Scene) -> str:
+def _furniture(scene: Scene, names: _Names) -> str:
     parts = []
     for box in scene.furniture:
         rgba = " ".join(f"{v:g}" for v in box.rgba)
-        parts.append(_apart(_box(box.name.replace(" ", "_"), box.center, box.size, rgba, box.yaw)))
+        parts.append(_apart(_box(names.free(box.name), box.center, box.size, rgba, box.yaw)))
     return "".join(parts)
 
 
-def _receptacle(r: Receptacle) -> str:
-    name = r.name.replace(" ", "_")
+def _receptacle(r: Receptacle, names: _Names) -> str:
     own = _COLOURS.get(r.colour, _COLOURS["grey"])
     looks = {"bin": (own, own), "tray": ("0.35 0.36 0.40 1", "0.20 0.55 0.55 1"), "counter": (_WHITE, _STEEL)}
     rgba, top = looks.get(r.kind, (_WOOD, _WOOD))
-    boxes = "".join(_box(name + p.name, p.center, p.size, rgba if p.name else top) for p in parts(r))
+    boxes = "".join(_box(names.free(r.name + p.name), p.center, p.size, rgba if p.name else top) for p in parts(r))
     return f'<body pos="{r.center[0]} {r.center[1]} 0" euler="0 0 {r.yaw}">{boxes}</body>'
 
 
@@ -78,6 +98,7 @@ def world_mjcf(
     parts = [beside(robot, name) if name else (robot.body, robot.rest) for name in robots]
     center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
     extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
+    names = _names(body for body, _ in parts)
     bodies = "".join(objects.body_xml(p) for p in placements)
     assets = "".join(objects.made(p.spec).assets for p in placements)
     return f"""<mujoco model="{scene.name}">
@@ -101,7 +122,7 @@ def world_mjcf(
   <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"
         material="{covers.floor(scene)}" {STATIC}/>
   {covers.walls(scene)}{covers.tables(scene)}
-  {_walls(scene)}{_furniture(scene)}{"".join(_receptacle(r) for r in scene.receptacles)}
+  {_walls(scene, names)}{_furniture(scene, names)}{"".join(_receptacle(r, names) for r in scene.receptacles)}
   {"".join(body for body, _ in parts)}
   {bodies}
   {mocap}

@@ -10,6 +10,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import HALF_WIDTH
+from common.floor_plan import Box
 from common.household import load_household
 from common.plan_tables import SCENES
 from common.runtime import StartError
@@ -20,6 +21,9 @@ from services.sim.layout import place_objects
 from services.sim.physics import Physics
 from tests.simulation import Simulation
 from tests.support import JOINT_NAMES
+
+TWICE = ("palm", "floor", "table")
+"""Names that a part of the robot, the floor and a receptacle have."""
 
 
 @pytest.mark.parametrize(
@@ -235,6 +239,7 @@ def test_a_snapshot_restores_the_whole_state(tmp_path: Path) -> None:
         (("x = 0.0, y = 0.0", "x = 30.0, y = 0.0"), "home (30.0, 0.0) is outside of low"),
         (("mass = 0.12", "mass = -1.0"), "'yellow block' needs a positive size and mass"),
         (('name = "green can"', 'name = "red mug"'), "object 'red mug' is defined twice"),
+        (('name = "green can"', 'name = "Tom & Jerry"'), "name 'Tom & Jerry' has & in it"),
         (('delivery = "delivery tray"', 'delivery = "trey"'), "delivery 'trey' is no receptacle"),
         (('name = "minimal"', 'name = "minimal"\nfloor = 1'), "unknown field `floor`"),
     ],
@@ -246,6 +251,13 @@ def test_a_typo_in_a_scene_is_named(tmp_path: Path, change: tuple[str, str], exp
     with pytest.raises(SceneError, match=r"scene\.toml") as error:
         load_scene(str(path))
     assert expected in str(error.value)
+
+
+def test_furniture_may_be_called_what_a_part_of_the_robot_is() -> None:
+    scene = load_scene("minimal")
+    boxes = (Box(name=name, center=(1.0, 1.0 + n / 9, 0.5), size=(0.1, 0.1, 1.0)) for n, name in enumerate(TWICE))
+    model = Physics(msgspec.structs.replace(scene, furniture=tuple(boxes)), 0).model
+    assert {"palm", "palm_", "floor_", "table_"} <= {model.geom(n).name for n in range(model.ngeom)}
 
 
 def test_what_the_robot_mapped_itself_is_taken_as_it_was_measured(tmp_path: Path) -> None:
