@@ -180,8 +180,8 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
 
     def _in_model(self) -> list[str]:
         """Names that the simulation's model has of it."""
-        parts = *self.objects, *self.obstacles, *self.furniture, *self.receptacles
-        return [self.name, *(part.name for part in parts)]
+        things, furniture = [o.name for o in self.objects], [f.name for f in self.furniture]
+        return [self.name, *things, *furniture, *(o.name for o in self.obstacles), *(r.name for r in self.receptacles)]
 
 
 def scene_path(name: str) -> Path:
