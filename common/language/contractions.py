@@ -112,6 +112,7 @@ _CONTRACTIONS = tuple(
         (r"\b(?!o')(\w+)'d\b", r"\1 would"),
         (r"\bid (?=like|love|appreciate|prefer|be|want|need|rather)", "i would "),
         (r"\blet'?s\b", "let us"),
+        (r"\bits (?=(?:lying|standing|sitting|on|in|at|under|behind|next to)\b)", "it is "),
         (r"^(please )?go (?:over )?(?:and )?(?=(?:tell|say|inform|announce|wish|let \w+(?: \w+)? know)\b)", r"\1"),
         (rf"{_TELL_NAME} (?=(?:in|at) (?:the|my|our)\b)", "tell them "),
         (

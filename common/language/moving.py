@@ -96,7 +96,7 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "deliver", f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>", heard="(bring | take | carry) <thing> to <spot>"
     ),
-    Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>"),
+    Wording("wish_at", "(bring | get | fetch | carry | have) <thing> (on | in) <spot>"),
     Wording("put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | in) <spot>"),
     Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>"),
     Wording(
@@ -143,7 +143,7 @@ MOVING: tuple[Wording, ...] = (
         " | (help me | try to) (look for | find | search for | locate) <thing>",
     ),
     Wording("get", f"({FETCH} | get) <thing>"),
-    Wording("wish_at", f"({PERSON} {WISH} | let us have) <thing> [to be] {ON} <spot>"),
+    Wording("wish_at", f"{PERSON} {WISH} <thing> [to be] {ON} <spot>"),
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
     Wording("put_near", f"{PERSON} {WISH} <thing> [to be] (next to | beside | close to) <spot>"),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),

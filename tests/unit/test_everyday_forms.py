@@ -66,6 +66,11 @@ from evaluation.everyday.understanding import understand
         # What nobody can carry, and where nobody can go.
         ("-", "move the washing machine to the kitchen", "refuse()"),
         ("-", "pop over to the chemist for my pills", "none()"),
+        # Where something is wanted from somewhere, and where it lies, however that is spelt.
+        ("-", "let's have the spatula from the bookshelf on the kitchen table", "put(spatula, kitchen table)"),
+        ("-", "pls bring me teh hair brush, its lying on the desk", "fetch(hair brush)"),
+        # What names no place is the thing of what was suggested.
+        ("heard:go to the bookshelf and bring me the hair brush", "the hairbrush", "fetch(hairbrush)"),
         # Known things in the plural are no kind.
         ("-", "my vitamins ought to be on the dresser rather than the desk", "put(orange box, dresser)"),
         ("-", "let my wife in the study know that lunch is ready", "goto(study); say(lunch is ready)"),
