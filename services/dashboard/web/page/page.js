@@ -103,6 +103,7 @@ window.addEventListener("message", (event) => {
 // --- microphone
 let microphone = null;
 let talking = false;
+let holder = null; // the pointer that holds the button
 
 async function openMicrophone() {
   const stream = await navigator.mediaDevices.getUserMedia({
@@ -120,11 +121,14 @@ async function talkStart(event) {
   event.preventDefault();
   if (talking) return;
   talking = true;
+  holder = event.pointerId;
+  // The button moves as its words change, and is held still by a pointer that was over it.
+  if (event.isTrusted) $("talk").setPointerCapture(holder);
   $("talk").textContent = "…";
   try {
     microphone = microphone || (await openMicrophone());
     await microphone.context.resume();
-    $("talk").textContent = "Talking";
+    if (talking) $("talk").textContent = "Talking";
   } catch (error) {
     talking = false;
     $("talk").textContent = "No microphone";
@@ -132,8 +136,8 @@ async function talkStart(event) {
   }
 }
 
-function talkEnd() {
-  if (!talking) return;
+function talkEnd(event) {
+  if (!talking || (event.type !== "blur" && event.pointerId !== holder)) return;
   talking = false;
   $("talk").textContent = "Hold to talk";
   send(new ArrayBuffer(0));
