@@ -77,7 +77,8 @@ LEAST = {
     "43": Least(0.6, 0.8, 15),
     "44": Least(0.75, 0.93, 7),
     "45": Least(0.55, 0.75, 14),
-    "46": Least(0.55, 0.75, 18),
+    "46": Least(0.6, 0.8, 8),
+    "47": Least(0.58, 0.78, 8),
 }
 """By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
 
