@@ -47,11 +47,11 @@ _LABELLED = re.compile(
 """Things behind the name of the place where they are to go: `toy box: the red ball`."""
 _SENTENCE = re.compile(r"[^.;!?]+[.;!?]*\s*|[.;!?]+\s*")
 _ROUTE = re.compile(r"^(?P<head>[^:,]{3,40}):\s+(?P<stops>[^.;!?:]+,[^.;!?:]+)[.!]*\s*$")
+"""Places one after the other behind what tells that a way follows."""
 _BACK = re.compile(
     r"^(?:(?:back|home|here|me)(?: again)?|(?:back |home )?(?:here|home|to me|to us)(?: to me| again)?)$"
 )
 _IN_ORDER = re.compile(r"^in (?:that|this) order$")
-"""Places one after the other behind what tells that a way follows."""
 _RUBBISH = frozenset({"rubbish", "trash", "garbage"})
 
 

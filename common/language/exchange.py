@@ -45,12 +45,9 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False, explain
     if not spans:
         return None
     bare = tuple(w for w in new if w not in DETERMINERS)
-    places = [is_place(tuple(w for w in words[slice(*span)] if w not in DETERMINERS)) for span in spans]
-    if is_place(bare):
-        start, end = spans[-1]
-    else:
-        # "the hairbrush", after "go to the bed and bring me the hair brush", is no other place.
-        start, end = spans[places.index(False) if False in places else 0]
+    # "the hairbrush", after "go to the bed and bring me the hair brush", is no other place.
+    things = [span for span in spans if not is_place(tuple(w for w in words[slice(*span)] if w not in DETERMINERS))]
+    start, end = spans[-1] if is_place(bare) else (things or spans)[0]
     at = next((i for i, w in enumerate(new) if w in PREPOSITIONS), len(new))
     if len(spans) > 1 and is_place(tuple(w for w in new[at + 1 :] if w not in DETERMINERS)):
         end = len(words)  # both the thing and where it goes are said anew

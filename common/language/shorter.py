@@ -31,7 +31,7 @@ SHORTER = tuple(
         (r"\b(anything|something|nothing) at all\b", r"\1"),
         *((rf"(?<![\w:.] )(?<![:.])\b{n} (?=[a-z])|(?<=[a-z] ){n} (?=[a-z])", f"{word} ") for n, word in _CARDINALS),
         (r"\b(?:a few|several) (?!times\b|\w+ ago\b)(?=[a-z]+s\b)(?!seconds\b|minutes\b|hours\b|moments\b)", "some "),
-         (r"\b(from (?:now|today) on), (?=\w)", r"\1 "),
+        (r"\b(from (?:now|today) on), (?=\w)", r"\1 "),
         (r"^from (?:now|today) on (?:(?:i|we|you)(?: will| shall| can)? )?(?=(?:call|name)\b)", ""),
         (rf"\b(?:its|their|the|my|his|her) ({A_COLOUR}) {_KIN}\b", r"the \1 one"),
         (r"\b(?:just|right) now\b", "now"),

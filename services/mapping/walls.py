@@ -62,13 +62,14 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
     points, eyes, weights = _thinned(points[free], eyes[free])
     if len(points) < LEAST:
         return []
-    normals = _normals(points, eyes, weights)
+    near = KDTree(points).query(points, min(NEIGHBOURS, len(points)), distance_upper_bound=AROUND)
+    normals = _normals(points, eyes, weights, near)
     known = ~np.isnan(normals)
     if not known.any():
         return []
     main = _refined(points[known], weights[known], normals[known], main_direction(normals[known]))
     for across in (main, main + math.pi / 2):
-        again = _normals(points, eyes, weights, across)
+        again = _normals(points, eyes, weights, near, across)
         normals = np.where(np.isnan(normals) & lies_across(again, across), again, normals)
     known = ~np.isnan(normals)
     rest, others = np.ones(len(points), bool), []
@@ -123,16 +124,18 @@ def _refined(points: Array, weights: Array, normals: Array, yaw: float) -> float
     return best[1]
 
 
-def _normals(points: Array, eyes: Array, weights: Array, across: float | None = None) -> Array:
-    """Direction (n,) [rad] across what each point lies on; nan where that is no line.
+def _normals(
+    points: Array, eyes: Array, weights: Array, near: tuple[Array, Array], across: float | None = None
+) -> Array:
+    """Direction (n,) [rad] across what each point lies on; nan where that is no line; `near`: distances
+    and numbers (n, k) of the points around each, a distance infinite where there are no more.
 
     Weighted: of a wall that was seen for long the noise has points in many cells, and most of them in the middle ones.
     What was seen from the opposite direction is a thin wall's other side, and so is what was seen from beyond the line
     through a point where walls are known to lie `across` [rad]: both sides may be seen from along the wall.
     """
-    near, found = KDTree(points).query(points, min(NEIGHBOURS, len(points)), distance_upper_bound=AROUND)
-    there = np.isfinite(near)
-    found = np.where(there, found, 0)
+    there = np.isfinite(near[0])
+    found = np.where(there, near[1], 0)
     views = eyes - points
     if across is None:
         there &= np.einsum("ni,nki->nk", views, views[found]) > 0.0

@@ -19,7 +19,6 @@ PICTURE = 0.2
 """Time [s] between a picture and the scans that are held against it, at most: two scans."""
 LATE = 4.0
 """Time [s] after its picture within which an object is reported; chosen: several times what perception takes."""
-
 UNSEEN = 1.0
 """Distance [m] from the robot within which its head camera may not see a thing on the floor again before the base is
 upon it: the picture begins 0.45 m before its middle, and only where it looks."""

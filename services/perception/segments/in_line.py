@@ -24,10 +24,10 @@ STRAYS = 0.02
 def end_to_end(parts: Sequence[Array]) -> bool:
     """Parts, each (n, 3) [m, over the surface], lie one after the other along a line, and are no longer than a tool."""
     every = np.concatenate(parts)
-    plan = every[:, :2] - every[:, :2].mean(axis=0)
+    middle = every[:, :2].mean(axis=0)
+    plan = every[:, :2] - middle
     turn = np.linalg.eigh(np.cov(plan.T))[1]
     spans, widths = [], []
-    middle = every[:, :2].mean(axis=0)
     for part in parts:
         (low, start), (high, end) = np.quantile((part[:, :2] - middle) @ turn, (STRAYS, 1 - STRAYS), axis=0)
         spans.append((start, end))

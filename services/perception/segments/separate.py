@@ -159,17 +159,20 @@ def _with_handle(view: View, whole: Piece, hanging: NDArray[np.bool_]) -> Piece:
 
 
 def _in_air(view: View, segment: Segment, noise: float) -> bool:
-    """The same of what was not measured yet."""
-    return hangs(view, segment.points, segment.surface.height) and _hangs(
-        view, Piece(segment, measured(view, segment)), noise
-    )
+    """What was not measured yet hangs in the air; what does not at first sight need not be."""
+    hanging = hangs(view, segment.points, segment.surface.height)
+    return hanging and not _curves_in(Piece(segment, measured(view, segment)), noise)
 
 
 def _hangs(view: View, piece: Piece, noise: float) -> bool:
-    """A piece hangs in the air, and is no ball on the surface, under which one looks as it curves in."""
+    """A piece hangs in the air, and is no ball on the surface."""
+    return not _curves_in(piece, noise) and hangs(view, piece.segment.points, piece.segment.surface.height)
+
+
+def _curves_in(piece: Piece, noise: float) -> bool:
+    """A piece is a ball on the surface, under which one looks as it curves in."""
     low = quantile(piece.segment.points[:, 2], LOWEST) - piece.segment.surface.height
-    rests = piece.shape.family == "ball" and _explained(piece, noise) and low < EQUATOR * piece.shape.size[2]
-    return not rests and hangs(view, piece.segment.points, piece.segment.surface.height)
+    return piece.shape.family == "ball" and _explained(piece, noise) and low < EQUATOR * piece.shape.size[2]
 
 
 def _explained(piece: Piece, noise: float) -> bool:

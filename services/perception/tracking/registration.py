@@ -82,7 +82,7 @@ def _lowest(costs: Callable[[Array], Array], ways: Array, farthest: float) -> Ar
 def laid_over(believed: Array, seen: Array) -> Array:
     """Points (m, 3) of a view, moved level to where nearly all of them lie on those (n, 3) of earlier ones; as they are
     where that is so already, or nowhere near."""
-    tree, few = cKDTree(believed), seen[:: max(1, math.ceil(len(seen) / FEW))]
+    tree, few = cKDTree(believed), _some(seen, FEW)
     if float(_unlike(tree, few)) <= ALIKE:
         return seen
     by = _lowest(lambda moved: _unlike(tree, few + moved[:, None]), _LEVEL, BETWEEN)
@@ -110,5 +110,5 @@ def _empty(points: Array, view: View) -> Array:
     return np.asarray(through.sum(axis=1) / np.maximum(1, inside.sum(axis=1)))
 
 
-def _some(points: Array) -> Array:
-    return points[:: max(1, math.ceil(len(points) / MOST))]
+def _some(points: Array, most: int = MOST) -> Array:
+    return points[:: max(1, math.ceil(len(points) / most))]

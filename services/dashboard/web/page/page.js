@@ -102,8 +102,7 @@ window.addEventListener("message", (event) => {
 
 // --- microphone
 let microphone = null;
-let talking = false;
-let holder = null; // the pointer that holds the button
+let holder = null; // the pointer that holds the button: somebody talks
 
 async function openMicrophone() {
   const stream = await navigator.mediaDevices.getUserMedia({
@@ -112,15 +111,14 @@ async function openMicrophone() {
   const context = new AudioContext({ sampleRate: RATE });
   await context.audioWorklet.addModule("/page/recorder.js");
   const node = new AudioWorkletNode(context, "recorder", { numberOfOutputs: 0 });
-  node.port.onmessage = (event) => { if (talking) send(event.data); };
+  node.port.onmessage = (event) => { if (holder !== null) send(event.data); };
   context.createMediaStreamSource(stream).connect(node);
   return { stream, context };
 }
 
 async function talkStart(event) {
   event.preventDefault();
-  if (talking) return;
-  talking = true;
+  if (holder !== null) return;
   holder = event.pointerId;
   // The button moves as its words change, and is held still by a pointer that was over it.
   if (event.isTrusted) $("talk").setPointerCapture(holder);
@@ -128,17 +126,17 @@ async function talkStart(event) {
   try {
     microphone = microphone || (await openMicrophone());
     await microphone.context.resume();
-    if (talking) $("talk").textContent = "Talking";
+    if (holder !== null) $("talk").textContent = "Talking";
   } catch (error) {
-    talking = false;
+    holder = null;
     $("talk").textContent = "No microphone";
     $("talk").title = String(error);
   }
 }
 
 function talkEnd(event) {
-  if (!talking || (event.type !== "blur" && event.pointerId !== holder)) return;
-  talking = false;
+  if (holder === null || (event.type !== "blur" && event.pointerId !== holder)) return;
+  holder = null;
   $("talk").textContent = "Hold to talk";
   send(new ArrayBuffer(0));
 }
